@@ -1,0 +1,1 @@
+"""Recorded runs to tidy tables, tests, figures and a report."""

@@ -1,0 +1,105 @@
+"""What is on the screen at one instant, as plain values: print it, compare it, log it. Knows no GPU."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+View = Literal["three_quarter", "side", "front", "legs"]
+Ground = Literal["open_ground", "treadmill"]
+
+
+@dataclass(frozen=True)
+class Walker:
+    """One walker at one instant.
+
+    actor:          name of the actor whose motion is shown.
+    body:           name of the body, or "" for the actor's own.
+    speed:          m/s; step_frequency: steps/min.
+    phase:          in [0, 1), 0 at right heel strike.
+    distance:       m walked along +Z since the walker was placed (0 on a treadmill).
+    place:          (x, z) m, where the walker was placed.
+    """
+
+    actor: str
+    speed: float
+    step_frequency: float
+    phase: float
+    distance: float = 0.0
+    place: tuple[float, float] = (0.0, 0.0)
+    body: str = ""
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Where the scene is seen from.
+
+    view:          a named view that follows the walker (three_quarter, front) or stands still (side, legs).
+    distance:      m from the camera to the walker.
+    height:        m above the ground.
+    field_of_view: vertical, degrees.
+    """
+
+    view: View = "three_quarter"
+    distance: float = 5.0
+    height: float = 1.6
+    field_of_view: float = 30.0
+
+
+@dataclass(frozen=True)
+class Line:
+    """One paragraph of a page: kind decides size and weight; text may hold any script."""
+
+    text: str
+    kind: Literal["title", "text", "small", "hint", "error"] = "text"
+
+
+@dataclass(frozen=True)
+class Box:
+    """Something on a page that can be typed into or chosen: a field, an option or a button.
+
+    id:      what a click on it answers, unique on the page.
+    label:   text in or beside it.
+    kind:    "field" (typed text), "option" (one of several), "button".
+    chosen:  the option that is chosen; focused: has the keyboard.
+    """
+
+    id: str
+    label: str
+    kind: Literal["field", "option", "button"]
+    chosen: bool = False
+    focused: bool = False
+
+
+@dataclass(frozen=True)
+class Row:
+    """A question's prompt and the boxes that answer it, or a row of buttons when the prompt is empty."""
+
+    prompt: str
+    boxes: tuple[Box, ...]
+    error: str = ""
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page of text, centred in a calm column: lines, then rows of boxes, then a hint at the bottom.
+
+    over_scene: drawn over the (dimmed) walker instead of on a plain background, as a pause is.
+    """
+
+    lines: tuple[Line, ...] = ()
+    rows: tuple[Row, ...] = ()
+    hint: str = ""
+    progress: float | None = None
+    over_scene: bool = False
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything visible: walkers on a ground from a camera, or a page, or both; and one line at the bottom."""
+
+    walkers: tuple[Walker, ...] = ()
+    camera: Camera = field(default_factory=Camera)
+    ground: Ground = "open_ground"
+    page: Page | None = None
+    caption: str = ""

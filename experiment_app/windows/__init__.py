@@ -1,0 +1,1 @@
+"""Places a scene can be shown: a desktop window, an off-screen buffer, a video."""

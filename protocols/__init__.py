@@ -1,0 +1,1 @@
+"""What to show when: study files, designs, tasks as pure state machines, records of trials."""
