@@ -1,0 +1,11 @@
+"""What a person can put right, as one sentence with the way out; the command prints it and exits."""
+
+from __future__ import annotations
+
+
+class UsageError(Exception):
+    """Wrong usage, study file or environment; found before the participant sits down. Exit status 2."""
+
+
+class RunError(Exception):
+    """Something failed while a run was going on; what was recorded is safe. Exit status 1."""

@@ -1,0 +1,151 @@
+"""The journal of a run: an append-only file written by its own thread, so that the disk never holds up a frame.
+
+`write` queues; `saved` says how many records are safe. A trial's record is followed by fsync, all else is
+flushed to the operating system at once, which survives the death of this process.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Iterable
+from pathlib import Path
+from queue import SimpleQueue
+from typing import IO
+
+from experiment_app.errors import RunError, UsageError
+from experiment_app.run_folder import Run, journal_lines, lock
+from protocols.record import Ended, Header, Record, TrialRecord, encode_line
+
+DURABLE = (Header, TrialRecord, Ended)
+"""Records after which the file is forced to the disk (fsync)."""
+
+
+class Journal:
+    """An open journal. Use as a context manager; leaving it writes what is queued and closes the file."""
+
+    def __init__(self, file: IO[bytes], path: Path) -> None:
+        self.path = path
+        self._file = file
+        self._queue: SimpleQueue[Record | None] = SimpleQueue()
+        self._queued = 0
+        self._saved = 0
+        self._failure: OSError | None = None
+        self._idle = threading.Condition()
+        self._thread = threading.Thread(target=self._write_all, name="journal", daemon=True)
+        self._thread.start()
+
+    def write(self, records: Iterable[Record]) -> None:
+        """Queues records in order; raises RunError when an earlier one could not be written."""
+        self._check()
+        for record in records:
+            self._queued += 1
+            self._queue.put(record)
+
+    @property
+    def saved(self) -> bool:
+        """True when everything written so far is safe; raises RunError when it never will be."""
+        self._check()
+        return self._saved == self._queued
+
+    def wait(self) -> None:
+        """Returns when everything written so far is safe; raises RunError when it never will be."""
+        with self._idle:
+            self._idle.wait_for(lambda: self._failure is not None or self._saved == self._queued)
+        self._check()
+
+    def close(self) -> None:
+        """Writes what is queued, closes the file, releases the lock; raises RunError when writing failed."""
+        self._queue.put(None)
+        self._thread.join()
+        self._file.close()
+        self._check()
+
+    def __enter__(self) -> Journal:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        try:
+            self.close()
+        except RunError:
+            if kind is None:
+                raise
+
+    def _check(self) -> None:
+        if self._failure is not None:
+            raise RunError(
+                f"{self.path} can no longer be written ({self._failure.strerror}); everything up to the last "
+                "finished trial is safe. Make room or repair the disk, then give the same command again to go on."
+            )
+
+    def _write_all(self) -> None:
+        while (record := self._queue.get()) is not None:
+            if self._failure is None:
+                try:
+                    self._file.write(encode_line(record).encode("utf-8") + b"\n")
+                    self._file.flush()
+                    if isinstance(record, DURABLE):
+                        os.fsync(self._file.fileno())
+                except OSError as error:
+                    self._failure = error
+            with self._idle:
+                self._saved += self._failure is None
+                self._idle.notify_all()
+
+
+def create_journal(run: Run, header: Header) -> Journal:
+    """The journal of a new run, its header on disk; raises UsageError when one is there already."""
+    try:
+        file = open(run.journal, "xb", buffering=0)  # noqa: SIM115 - the Journal closes it
+    except FileExistsError:
+        raise UsageError(f"{run.journal} exists already; nothing is ever overwritten.") from None
+    except OSError as error:
+        raise UsageError(
+            f"{run.journal} cannot be made ({error.strerror}); choose another folder with --data."
+        ) from None
+    lock(file, run.journal)
+    journal = Journal(file, run.journal)
+    try:
+        journal.write([header])
+        journal.wait()
+        _sync_folder(run.folder)
+    except RunError as error:
+        file.close()
+        raise UsageError(f"{error}") from None
+    return journal
+
+
+def reopen_journal(run: Run) -> tuple[Journal, int]:
+    """The journal of an unfinished run, ready to append, and the bytes of a torn last line set aside.
+
+    The torn bytes are copied to `journal.torn-<n>` before they are cut off, so nothing is lost.
+    """
+    try:
+        file = open(run.journal, "r+b", buffering=0)  # noqa: SIM115 - the Journal closes it
+    except OSError as error:
+        raise UsageError(f"{run.journal} cannot be written ({error.strerror}); make it writable.") from None
+    lock(file, run.journal)
+    _, torn = journal_lines(run.journal)
+    if torn:
+        size = os.fstat(file.fileno()).st_size
+        file.seek(size - torn)
+        rest = file.read()
+        copies = len(list(run.folder.glob("journal.torn-*")))
+        with open(run.folder / f"journal.torn-{copies + 1}", "xb") as copy:
+            copy.write(rest)
+            copy.flush()
+            os.fsync(copy.fileno())
+        file.truncate(size - torn)
+    file.seek(0, os.SEEK_END)
+    return Journal(file, run.journal), torn
+
+
+def _sync_folder(folder: Path) -> None:
+    """Makes the journal's name itself survive a power cut (POSIX; Windows needs and allows no such thing)."""
+    if os.name == "nt":  # pragma: no cover - exercised on Windows only
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

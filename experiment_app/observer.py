@@ -1,0 +1,151 @@
+"""A simulated observer: prefers a walk ratio per actor, holds and releases keys, corrects, confirms.
+
+It sees only what a person sees (the page or the trial) and answers with the same events. Randomness comes from
+the run's seed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from random import Random
+
+from protocols.adjustment import AdjustmentTrial
+from protocols.events import Clicked, Event, KeyDown, KeyUp, Typed
+from protocols.form import Form
+from protocols.plan import QuestionsStep, Step, TextStep, TrialStep, value_of
+from protocols.session import Session
+from protocols.study import Question, Simulation, Study
+
+READING = 1.0
+"""s a simulated observer looks at a page."""
+
+LOOKING = (0.6, 1.4)
+"""s of looking before the first key and between keys, uniform."""
+
+OVERSHOOT = 3.0
+"""steps/min, s.d. of where the first, coarse adjustment ends around the target."""
+
+RELEASE = 0.015
+"""s, s.d. of the moment a key is let go in the fine adjustment."""
+
+
+@dataclass(frozen=True)
+class Observer:
+    """One simulated participant's preferences.
+
+    preferred:   actor to preferred walk ratio, m·min.
+    trial_noise: m·min, s.d. over trials; anchoring: share of the way back to the start value.
+    answers:     question id to answer.
+    """
+
+    preferred: Mapping[str, float]
+    trial_noise: float
+    anchoring: float
+    answers: Mapping[str, str]
+
+
+def draw_observer(study: Study, participant_number: int, seed: int) -> Observer:
+    """An observer of the study's simulated population; the same seed gives the same observer.
+
+    Preferences over actors are normal with the study's means and s.d. and correlate by `shared` within a
+    participant. Between-participant factors are filled in turn by the participant's number.
+    """
+    assert study.simulation is not None
+    rng = Random(f"{study.study}/observer/{seed}")
+    return Observer(
+        _preferences(study.simulation, rng),
+        study.simulation.trial_noise,
+        study.simulation.anchoring,
+        {q.id: _answer(study, q, participant_number, rng) for q in study.participants.questions},
+    )
+
+
+def _preferences(simulation: Simulation, rng: Random) -> dict[str, float]:
+    own = rng.gauss(0.0, 1.0)
+    preferred = {}
+    for actor, population in simulation.preferred_walk_ratio.items():
+        z = math.sqrt(simulation.shared) * own + math.sqrt(1.0 - simulation.shared) * rng.gauss(0.0, 1.0)
+        preferred[actor] = max(population.mean + population.sd * z, population.mean / 4.0)
+    return preferred
+
+
+def _answer(study: Study, question: Question, number: int, rng: Random) -> str:
+    if question.kind == "choice":
+        levels = study.participants.between.get(question.id)
+        return levels[(number - 1) % len(levels)] if levels else next(iter(question.options))
+    if question.kind == "number":
+        return str(rng.randint(question.minimum, min(question.maximum, question.minimum + 30)))
+    return "simulated"
+
+
+class SimulatedParticipant:
+    """Plans the events of each page and trial when it appears, and hands them out as time goes by."""
+
+    def __init__(self, study: Study, observer: Observer, seed: int) -> None:
+        self._study = study
+        self._observer = observer
+        self._rng = Random(f"{study.study}/behaviour/{seed}")
+        self._planned_for: tuple[Step, float] | None = None
+        self._events: list[Event] = []
+
+    def look(self, session: Session) -> None:
+        """Takes notice of the session; plans what to do when a page or trial has newly appeared."""
+        if session.shown is None or self._planned_for == (session.step, session.shown):
+            return
+        self._planned_for = (session.step, session.shown)
+        if session.trial is not None:
+            self._events = self._adjust(session.step, session.trial)
+        elif isinstance(session.stage, Form):
+            self._events = self._fill(session.step, session.shown + READING)
+
+    def next_time(self) -> float | None:
+        """The time (s) of the next event, None when nothing is planned."""
+        return self._events[0].time if self._events else None
+
+    def take(self, until: float) -> list[Event]:
+        """The planned events up to `until` (s), oldest first; each is handed out once."""
+        count = sum(event.time <= until for event in self._events)
+        taken, self._events = self._events[:count], self._events[count:]
+        return taken
+
+    def _fill(self, step: Step, time: float) -> list[Event]:
+        if isinstance(step, TextStep):
+            return [Clicked(time, "agree") if step.kind == "consent" else KeyDown(time, "enter")]
+        assert isinstance(step, QuestionsStep)
+        events: list[Event] = []
+        for question in step.questions:
+            answer = self._observer.answers[question.id]
+            if question.kind == "choice":
+                events.append(Clicked(time, f"{question.id}:{answer}"))
+            else:
+                events += [Clicked(time, question.id), Typed(time, answer)]
+        return [*events, Clicked(time, "next")]
+
+    def _target(self, step: TrialStep, trial: AdjustmentTrial) -> float:
+        """steps/min at which this observer would stop: SF = sqrt(60 v / WR), from WR = SL / SF and v = SL SF / 60."""
+        actor = str(value_of(self._study.stimulus.actor, step.trial))
+        preferred = self._observer.preferred
+        middle = sum(preferred.values()) / len(preferred)
+        noisy = preferred.get(actor, middle) + self._rng.gauss(0.0, self._observer.trial_noise)
+        target = math.sqrt(60.0 * trial.speed / max(noisy, 1e-4))
+        target += self._observer.anchoring * (trial.start - target)
+        return min(max(target, trial.task.minimum), trial.task.maximum)
+
+    def _adjust(self, step: Step, trial: AdjustmentTrial) -> list[Event]:
+        assert isinstance(step, TrialStep)
+        task, target = trial.task, self._target(step, trial)
+        coarse = min(max(target + self._rng.gauss(0.0, OVERSHOOT), task.minimum), task.maximum)
+        time, setting = trial.onset, trial.start
+        events: list[Event] = []
+        for goal, slip in ((coarse, 0.0), (target, RELEASE)):
+            time += self._rng.uniform(*LOOKING)
+            if goal != setting:
+                key = task.raise_key if goal > setting else task.lower_key
+                held = max(abs(goal - setting) / task.rate + self._rng.gauss(0.0, slip), 0.0)
+                events += [KeyDown(time, key), KeyUp(time + held, key)]
+                time += held
+            setting = goal
+        time = max(time + self._rng.uniform(*LOOKING), trial.onset + task.minimum_looking_time + 0.1)
+        return [*events, KeyDown(time, task.confirm_key), KeyUp(time + 0.08, task.confirm_key)]

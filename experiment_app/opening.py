@@ -1,0 +1,105 @@
+"""Opens a run: decides new or continued, writes the header, makes the plan. Knows no window and no command."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from experiment_app.errors import UsageError
+from experiment_app.journal import Journal, create_journal, reopen_journal
+from experiment_app.run_folder import Run, new_run, participant_number, participant_runs, progress
+from protocols.design import default_seed
+from protocols.plan import Plan, make_plan
+from protocols.record import Continued, Header
+from protocols.session import remaining
+from protocols.study_file import StudyFile, parse_study
+
+RECORDED_VERSIONS = ("gaitlab", "numpy", "scipy", "moderngl", "glfw", "pydantic")
+
+
+@dataclass(frozen=True)
+class OpenRun:
+    """A run ready to play: its journal is open and locked."""
+
+    run: Run
+    plan: Plan
+    journal: Journal
+    seed: int
+    participant_number: int
+    continued: bool
+
+
+def unfinished_run(data: Path, study: str, participant: str) -> Run | None:
+    """The participant's latest run when it can be continued, else None."""
+    runs = participant_runs(data, study, participant)
+    return runs[-1] if runs and runs[-1].lines and not runs[-1].end else None
+
+
+def open_new(
+    study: StudyFile,
+    participant: str,
+    data: Path,
+    *,
+    display: Mapping[str, Any],
+    simulated: bool,
+    seed: int | None = None,
+    again: bool = False,
+) -> OpenRun:
+    """A new run; raises UsageError when the participant has finished one and `again` is not set."""
+    name = study.study.study
+    runs = participant_runs(data, name, participant)
+    if runs and not again:
+        how = {"": "has an unfinished run", "finished": "has already finished", "declined": "has declined"}
+        raise UsageError(
+            f"participant {participant} {how.get(runs[-1].end, 'has a run')} ({runs[-1].folder}); "
+            "use another ID, or --new-run to record another run beside it."
+        )
+    number = runs[-1].number + 1 if runs else 1
+    order = participant_number(data, name, participant)
+    run = new_run(data, name, participant, number)
+    if seed is None:
+        seed = default_seed(name, participant, number)
+    header = Header(
+        study=name,
+        study_hash=study.hash,
+        study_text=study.text,
+        participant=participant,
+        participant_number=order,
+        run=number,
+        seed=seed,
+        simulated=simulated,
+        versions=_versions(),
+        display=display,
+        started=_utc_now(),
+    )
+    return OpenRun(run, make_plan(study.study, seed, order), create_journal(run, header), seed, order, False)
+
+
+def open_unfinished(run: Run, *, display: Mapping[str, Any]) -> OpenRun:
+    """An unfinished run again, from its own copy of the study, at the first thing not done."""
+    header = run.header
+    study = parse_study(f"{run.journal} (the study file it holds)", header["study_text"]).study
+    plan = make_plan(study, header["seed"], header["participant_number"])
+    journal, torn = reopen_journal(run)
+    journal.write([Continued(0.0, _utc_now(), torn, display)])
+    plan = remaining(plan, progress(run))
+    return OpenRun(run, plan, journal, header["seed"], header["participant_number"], True)
+
+
+def _utc_now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
+
+
+def _versions() -> dict[str, str]:
+    versions = {"python": platform.python_version(), "system": platform.platform()}
+    for name in RECORDED_VERSIONS:
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:
+            versions[name] = "unknown"
+    return versions

@@ -1,0 +1,166 @@
+"""Where a run lives on disk: DATA/<study>/sourcedata/sub-<ID>/run-<N>/journal.jsonl; never overwritten.
+
+Creating is exclusive, an open run is locked against a second process, and a torn last line is set aside
+before anything is added.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any
+
+from experiment_app.errors import UsageError
+from protocols.record import DamagedLine, decode_line
+from protocols.session import Progress
+
+PARTICIPANT = re.compile(r"[A-Za-z0-9]{1,32}")
+"""Participant IDs: letters and digits only, as the labels of BIDS."""
+
+JOURNAL = "journal.jsonl"
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run on disk and what its journal says; lines is empty for a run that is new."""
+
+    folder: Path
+    study: str
+    participant: str
+    number: int
+    lines: tuple[dict[str, Any], ...] = ()
+
+    @property
+    def journal(self) -> Path:
+        """The journal's path."""
+        return self.folder / JOURNAL
+
+    @property
+    def header(self) -> dict[str, Any]:
+        """The journal's first line; an empty dict when the run is new."""
+        return self.lines[0] if self.lines else {}
+
+    @property
+    def end(self) -> str:
+        """Why the run ended ("finished", "declined"), or "" while it can be continued."""
+        reasons = [line["reason"] for line in self.lines if line["kind"] == "end"]
+        final = [reason for reason in reasons if reason in ("finished", "declined", "withdrawn")]
+        return final[0] if final else ""
+
+
+def check_participant(participant: str) -> str:
+    """The ID itself; raises UsageError when it holds anything but letters and digits."""
+    if not PARTICIPANT.fullmatch(participant):
+        raise UsageError(
+            f"--participant {participant!r}: an ID is 1 to 32 letters and digits without accents, "
+            "as P01; it becomes the name of a folder."
+        )
+    return participant
+
+
+def study_folder(data: Path, study: str) -> Path:
+    """The folder of one study's data."""
+    return data / study
+
+
+def participant_runs(data: Path, study: str, participant: str) -> list[Run]:
+    """The runs of a participant, oldest first; raises UsageError for an unreadable journal."""
+    folder = study_folder(data, study) / "sourcedata" / f"sub-{participant}"
+    try:
+        numbers = sorted(int(p.name[4:]) for p in folder.glob("run-*") if p.name[4:].isdigit())
+    except OSError as error:
+        raise UsageError(f"{folder} cannot be read: {error.strerror}.") from None
+    return [_read(folder / f"run-{number}", study, participant, number) for number in numbers]
+
+
+def participant_number(data: Path, study: str, participant: str) -> int:
+    """The participant's place in the order of arrival, from 1: how many others have a folder, and one."""
+    folder = study_folder(data, study) / "sourcedata"
+    others = {p.name for p in folder.glob("sub-*")} - {f"sub-{participant}"}
+    return len(others) + 1
+
+
+def new_run(data: Path, study: str, participant: str, number: int) -> Run:
+    """A run that does not exist yet, its folder made; raises UsageError when that cannot be done."""
+    folder = study_folder(data, study) / "sourcedata" / f"sub-{participant}" / f"run-{number}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UsageError(
+            f"{folder} cannot be made ({error.strerror}); choose another folder with --data, or make it writable."
+        ) from None
+    return Run(folder, study, participant, number)
+
+
+def journal_lines(path: Path) -> tuple[tuple[dict[str, Any], ...], int]:
+    """The whole lines of a journal and the number of bytes of a torn last line (0 when there is none).
+
+    Raises UsageError naming file and line when a line before the last is damaged.
+    """
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise UsageError(f"{path} cannot be read: {error.strerror}.") from None
+    parts = raw.split(b"\n")
+    lines: list[dict[str, Any]] = []
+    for number, part in enumerate(parts, start=1):
+        if not part and number == len(parts):
+            return tuple(lines), 0
+        try:
+            lines.append(decode_line(part.decode("utf-8")))
+        except (DamagedLine, UnicodeDecodeError) as error:
+            if number >= len(parts) - 1 and not any(parts[number:]):
+                return tuple(lines), len(raw) - len(b"\n".join(parts[: number - 1])) - (number > 1)
+            raise UsageError(
+                f"{path}: line {number}: {error}. Restore the file from a copy, or start a new run with --new-run."
+            ) from None
+        if number == len(parts):  # a whole line without its newline was still being written
+            lines.pop()
+            return tuple(lines), len(part)
+    return tuple(lines), 0
+
+
+def _read(folder: Path, study: str, participant: str, number: int) -> Run:
+    path = folder / JOURNAL
+    lines = journal_lines(path)[0] if path.exists() else ()
+    return Run(folder, study, participant, number, lines)
+
+
+def progress(run: Run) -> Progress:
+    """What a run's journal says is done."""
+    left: set[str] = set()
+    begun: dict[str, int] = {}
+    consented = False
+    for line in run.lines:
+        kind = line["kind"]
+        if kind == "page":
+            left.add(line["page"])
+        elif kind == "consent":
+            consented = bool(line["agreed"])
+        elif kind in ("begin", "trial"):
+            step = f"{'practice' if line['practice'] else 'trial'}-{line['number']}"
+            if kind == "begin":
+                begun[step] = begun.get(step, 0) + 1
+            else:
+                left.add(step)
+    return Progress(frozenset(left), begun, consented, bool(run.end))
+
+
+def lock(file: IO[bytes], path: Path) -> None:
+    """Keeps other processes off an open journal until it is closed; raises UsageError when one has it."""
+    try:
+        if os.name == "nt":  # pragma: no cover - exercised on Windows only
+            import msvcrt
+
+            file.seek(0x7FFFFFFF)
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined]
+        else:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        raise UsageError(
+            f"{path.parent} is in use by another gaitlab; end that session first, or use another participant ID."
+        ) from None

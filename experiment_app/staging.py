@@ -1,0 +1,102 @@
+"""A session to a scene: what the participant sees now. Pure; knows no GPU."""
+
+from __future__ import annotations
+
+from protocols.adjustment import AdjustmentTrial
+from protocols.form import Choice, Form
+from protocols.plan import QuestionsStep, TextStep, TrialStep, value_of
+from protocols.session import Interval, Overlay, Session
+from protocols.study import Study
+
+from experiment_app.scene import Box, Camera, Line, Page, Row, Scene, Walker
+
+
+def stage(session: Session) -> Scene:
+    """The scene of a session at its present time."""
+    if session.overlay is not None:
+        scene = _trial_scene(session) if session.trial is not None else Scene(page=None)
+        return Scene(
+            scene.walkers, scene.camera, scene.ground, _overlay_page(session, session.overlay), caption=""
+        )
+    if isinstance(session.stage, AdjustmentTrial):
+        return _trial_scene(session)
+    if isinstance(session.stage, Interval):
+        return Scene(page=Page())
+    return Scene(page=_page(session, session.stage))
+
+
+def camera_of(study: Study) -> Camera:
+    """The study's camera."""
+    view = study.stimulus.camera
+    return Camera(view.view, view.distance, view.height, view.field_of_view)
+
+
+def _trial_scene(session: Session) -> Scene:
+    step, trial, study = session.step, session.trial, session.plan.study
+    assert isinstance(step, TrialStep)
+    assert trial is not None
+    body = value_of(study.stimulus.body, step.trial) if study.stimulus.body else ""
+    walker = Walker(
+        actor=str(value_of(study.stimulus.actor, step.trial)),
+        body=str(body),
+        speed=trial.speed,
+        step_frequency=trial.setting,
+        phase=trial.phase,
+        distance=trial.distance,
+    )
+    return Scene((walker,), camera_of(study), study.stimulus.ground, caption=study.words.trial_caption)
+
+
+def _paragraphs(text: str) -> tuple[Line, ...]:
+    """Paragraphs are parted by empty lines; single line breaks inside one are only wrapping in the file."""
+    parts = [" ".join(part.split()) for part in text.replace("\r\n", "\n").split("\n\n")]
+    return tuple(Line(part) for part in parts if part)
+
+
+def _page(session: Session, form: Form) -> Page:
+    step, words = session.step, session.plan.study.words
+    if isinstance(step, QuestionsStep):
+        lines: tuple[Line, ...] = (Line(words.questions_title, "title"),)
+        return Page(lines, _rows(form), hint=words.question_hint)
+    assert isinstance(step, TextStep)
+    lines = (Line(step.page.title, "title"), *_paragraphs(step.page.text))
+    if step.kind == "consent":
+        return Page(lines, _rows(form), hint=words.choose_hint)
+    last = step.kind in ("debrief", "declined")
+    progress = None
+    if step.kind == "break" and session.plan.total:
+        progress = int(step.id.removeprefix("break-")) / session.plan.total
+    return Page(lines, hint=words.finished_hint if last else words.page_hint, progress=progress)
+
+
+def _rows(form: Form) -> tuple[Row, ...]:
+    rows: list[Row] = []
+    for i, item in enumerate(form.fields):
+        value, focused = form.values.get(item.id, ""), form.focus == i
+        if isinstance(item, Choice):
+            boxes = tuple(
+                Box(f"{item.id}:{option}", label, "option", option == value, focused)
+                for option, label in item.options
+            )
+        else:
+            boxes = (Box(item.id, value, "field", focused=focused),)
+        rows.append(Row(item.prompt, boxes, form.errors.get(item.id, "")))
+    if form.buttons:
+        first = len(form.fields)
+        buttons = tuple(
+            Box(name, label, "button", focused=form.focus == first + i)
+            for i, (name, label) in enumerate(form.buttons)
+        )
+        rows.append(Row("", buttons))
+    return tuple(rows)
+
+
+def _overlay_page(session: Session, overlay: Overlay) -> Page:
+    words = session.plan.study.words
+    title, text = {
+        "pause": (words.pause_title, words.pause_text),
+        "break": (words.break_title, words.break_text),
+        "stop": (words.stop_title, words.stop_text),
+    }[overlay.why]
+    lines = (Line(title, "title"), *_paragraphs(text))
+    return Page(lines, _rows(overlay.form), hint=words.choose_hint, over_scene=session.trial is not None)

@@ -1,0 +1,207 @@
+"""What a run writes down: one record per thing that happened, and its line of text with a checksum.
+
+The journal is a text file of such lines; this module knows the lines, not the file.
+"""
+
+from __future__ import annotations
+
+import json
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+from protocols.study import Level
+
+FORMAT = 1
+"""Version of the journal's lines; raised when a reader of the old version could misread the new."""
+
+
+@dataclass(frozen=True)
+class Header:
+    """The first line of a journal: what is needed to read, repeat and cite the run."""
+
+    kind = "header"
+    study: str
+    study_hash: str
+    study_text: str
+    participant: str
+    participant_number: int
+    run: int
+    seed: int
+    simulated: bool
+    versions: Mapping[str, str]
+    display: Mapping[str, Any]
+    started: str
+    format: int = FORMAT
+
+
+@dataclass(frozen=True)
+class Consented:
+    """The participant agreed to take part."""
+
+    kind = "consent"
+    time: float
+    agreed: bool
+
+
+@dataclass(frozen=True)
+class Answered:
+    """An answer to a question; a later answer to the same question replaces it."""
+
+    kind = "answer"
+    time: float
+    question: str
+    value: str | int
+
+
+@dataclass(frozen=True)
+class PageShown:
+    """A page the participant has read and left; time is when it was left."""
+
+    kind = "page"
+    time: float
+    page: str
+    shown: float
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key going down or up during a trial; time in s on the run's clock."""
+
+    kind = "key"
+    time: float
+    trial: int
+    practice: bool
+    key: str
+    down: bool
+
+
+@dataclass(frozen=True)
+class TrialBegun:
+    """The first frame of a trial was shown."""
+
+    kind = "begin"
+    time: float
+    number: int
+    practice: bool
+    attempt: int
+    factors: Mapping[str, Level]
+
+
+@dataclass(frozen=True)
+class TrialRecord:
+    """A finished trial.
+
+    onset, time:   s on the run's clock: first frame and confirmation.
+    response_time: s of looking between them, pauses excluded.
+    response:      step_frequency (steps/min), step_length (m), walk_ratio (m·min).
+    measured:      the same and speed (m/s), measured from the walker as drawn at the response; empty if undrawn.
+    frames, late_frames: frames shown and those later than 1.5 refresh periods.
+    """
+
+    kind = "trial"
+    time: float
+    number: int
+    practice: bool
+    attempt: int
+    block: int
+    repetition: int
+    factors: Mapping[str, Level]
+    response: Mapping[str, float]
+    onset: float
+    response_time: float
+    key_presses: int
+    reversals: int
+    early_confirms: int
+    pauses: int
+    measured: Mapping[str, float] = field(default_factory=dict)
+    frames: int = 0
+    late_frames: int = 0
+
+
+@dataclass(frozen=True)
+class Paused:
+    """The session was paused: by the participant (a break), a set break, the pause page or lost focus."""
+
+    kind = "pause"
+    time: float
+    why: str
+
+
+@dataclass(frozen=True)
+class Resumed:
+    """The session went on after a pause."""
+
+    kind = "resume"
+    time: float
+    paused: float
+
+
+@dataclass(frozen=True)
+class FrameIntervals:
+    """Times between the flips of one trial, ms."""
+
+    kind = "frames"
+    time: float
+    number: int
+    practice: bool
+    attempt: int
+    intervals_ms: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Continued:
+    """An unfinished run was opened again; torn_bytes of an incomplete last line were set aside."""
+
+    kind = "continue"
+    time: float
+    started: str
+    torn_bytes: int
+    display: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Ended:
+    """The run stopped: finished, declined, stopped, or the reason the window went away."""
+
+    kind = "end"
+    time: float
+    reason: str
+
+
+Record = (
+    Header | Consented | Answered | PageShown | Key | TrialBegun | TrialRecord
+    | Paused | Resumed | FrameIntervals | Continued | Ended
+)  # fmt: skip
+
+
+class DamagedLine(ValueError):
+    """A line of a journal that is not what was written."""
+
+
+def encode_line(record: Record) -> str:
+    """The record as one line of JSON without its newline; the last member is the CRC-32 of what precedes it."""
+    values: dict[str, Any] = {"kind": record.kind}
+    values.update((f.name, getattr(record, f.name)) for f in fields(record))
+    text = json.dumps(values, ensure_ascii=False, separators=(",", ":"), allow_nan=False, default=dict)
+    return f'{text[:-1]},"crc":"{_checksum(text)}"}}'
+
+
+def decode_line(line: str) -> dict[str, Any]:
+    """The members of a line without its checksum; raises DamagedLine when the line is torn or altered."""
+    head, mark, tail = line.rstrip("\r\n").rpartition(',"crc":"')
+    if not mark or not tail.endswith('"}'):
+        raise DamagedLine("the line has no checksum; it was cut off while being written")
+    text = head + "}"
+    if tail[:-2] != _checksum(text):
+        raise DamagedLine("the line does not match its checksum; it was altered or cut off")
+    try:
+        values = json.loads(text)
+    except ValueError as error:
+        raise DamagedLine(f"the line is not JSON: {error}") from None
+    return dict(values)
+
+
+def _checksum(text: str) -> str:
+    return f"{zlib.crc32(text.encode('utf-8')):08x}"

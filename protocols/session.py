@@ -1,0 +1,364 @@
+"""A participant's whole session as a value: which page or trial is on, what happens next, what to write down.
+
+begin / handle(event) / advance(until) give the next session; no clock, window or file in here. Records to be
+written collect in `emitted`, and the session waits for a Saved event before it goes on after a trial.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from protocols import adjustment
+from protocols.adjustment import AdjustmentTrial
+from protocols.events import Closed, Event, FocusLost, KeyDown, KeyUp, Saved, Shown
+from protocols.form import Choice, Entry, Form, handle_form
+from protocols.plan import Plan, QuestionsStep, Step, TextStep, TrialStep, value_of
+from protocols.record import (
+    Answered,
+    Consented,
+    Ended,
+    Key,
+    PageShown,
+    Paused,
+    Record,
+    Resumed,
+    TrialBegun,
+    TrialRecord,
+)
+from protocols.study import ChoiceQuestion, NumberQuestion, Question, TextPage
+
+
+@dataclass(frozen=True)
+class Interval:
+    """The empty screen after a trial: it lasts until `until` (s) and until everything is saved."""
+
+    until: float
+    saved: bool = False
+
+
+@dataclass(frozen=True)
+class Overlay:
+    """A page over the session: the pause page, the question whether to stop, or a break the participant took."""
+
+    why: str
+    since: float
+    form: Form
+
+
+@dataclass(frozen=True)
+class Session:
+    """One participant's session at one moment.
+
+    index:   step of the plan that is on; stage: its page, trial or the interval after it.
+    shown:   flip time (s) of the stage's first frame, None until it has been seen.
+    ended:   why the session is over, "" while it is not.
+    """
+
+    plan: Plan
+    index: int
+    stage: Form | AdjustmentTrial | Interval
+    shown: float | None = None
+    overlay: Overlay | None = None
+    pauses: int = 0
+    ended: str = ""
+    emitted: tuple[Record, ...] = field(default=())
+
+    @property
+    def step(self) -> Step:
+        """The step of the plan that is on."""
+        return self.plan.steps[self.index]
+
+    @property
+    def done(self) -> bool:
+        """True once the session is over."""
+        return bool(self.ended)
+
+    @property
+    def trial(self) -> AdjustmentTrial | None:
+        """The trial that is on, or None."""
+        return self.stage if isinstance(self.stage, AdjustmentTrial) else None
+
+
+def begin(plan: Plan) -> Session:
+    """The session at its first step."""
+    return _entered(Session(plan, 0, Form()), 0, 0.0)
+
+
+def drained(session: Session) -> tuple[Session, tuple[Record, ...]]:
+    """The session with nothing left to write, and the records that were waiting."""
+    return replace(session, emitted=()), session.emitted
+
+
+def advance(session: Session, until: float) -> Session:
+    """The session at time `until` (s) when no event has happened since."""
+    if session.done or session.overlay is not None:
+        return session
+    if isinstance(session.stage, AdjustmentTrial):
+        return replace(session, stage=adjustment.advance(session.stage, until))
+    if isinstance(session.stage, Interval) and session.stage.saved and until >= session.stage.until:
+        return _entered(session, session.index + 1, until)
+    return session
+
+
+def handle(session: Session, event: Event) -> Session:
+    """The session once `event` has happened."""
+    if session.done:
+        return session
+    if isinstance(event, Closed):
+        return _ended(session, event.time, event.reason)
+    if isinstance(event, Saved):
+        saved = isinstance(session.stage, Interval)
+        return replace(session, stage=replace(session.stage, saved=True)) if saved else session  # type: ignore[type-var]
+    if isinstance(event, Shown):
+        return _seen(session, event)
+    session = advance(session, event.time)
+    if session.overlay is not None:
+        return _overlaid(session, session.overlay, event)
+    if isinstance(event, KeyDown) and event.key == "escape":
+        return _paused(session, event, "pause")
+    if isinstance(session.stage, AdjustmentTrial):
+        return _in_trial(session, session.stage, event)
+    if isinstance(session.stage, Form):
+        return _on_page(session, session.stage, event)
+    return session
+
+
+# Entering and leaving steps
+
+
+def _entered(session: Session, index: int, time: float) -> Session:
+    if index >= len(session.plan.steps):
+        return _ended(session, time, "finished")
+    session = replace(session, index=index, shown=None, pauses=0, stage=_stage(session.plan, index))
+    step = session.step
+    if isinstance(step, TextStep) and step.kind == "debrief":
+        # all data are in; whoever closes the window on the last page has finished all the same
+        session = _emit(session, Ended(time, "finished"))
+    return session
+
+
+def _stage(plan: Plan, index: int) -> Form | AdjustmentTrial:
+    step, words = plan.steps[index], plan.study.words
+    if isinstance(step, TrialStep):
+        speed = float(value_of(plan.study.stimulus.speed, step.trial))
+        return adjustment.begin(plan.task, speed, float(value_of(plan.study.task.start, step.trial)))
+    if isinstance(step, QuestionsStep):
+        return Form(
+            fields=tuple(_field(question) for question in step.questions),
+            buttons=(("next", words.next),),
+            submit="next",
+            missing=words.missing,
+            not_a_number=words.not_a_number,
+            focus=0,
+        )
+    if step.kind == "consent":
+        return Form(buttons=(("agree", words.agree), ("decline", words.decline)))
+    return Form()
+
+
+def _field(question: Question) -> Choice | Entry:
+    if isinstance(question, ChoiceQuestion):
+        return Choice(question.id, question.prompt, tuple(question.options.items()))
+    if isinstance(question, NumberQuestion):
+        limits = (question.minimum, question.maximum)
+        return Entry(question.id, question.prompt, True, *limits, max_length=9)
+    return Entry(question.id, question.prompt, required=question.required, max_length=question.max_length)
+
+
+def _emit(session: Session, *records: Record) -> Session:
+    return replace(session, emitted=session.emitted + records)
+
+
+def _ended(session: Session, time: float, reason: str) -> Session:
+    already = isinstance(session.step, TextStep) and session.step.kind in ("debrief", "declined")
+    if not already and reason != "finished":
+        session = _emit(session, Ended(time, reason))
+    return replace(session, ended="finished" if already and session.step.id == "debrief" else reason)
+
+
+def _seen(session: Session, event: Shown) -> Session:
+    if session.shown is not None or isinstance(session.stage, Interval):
+        return session
+    session = replace(session, shown=event.time)
+    step = session.step
+    if isinstance(session.stage, AdjustmentTrial) and isinstance(step, TrialStep):
+        trial = step.trial
+        begun = TrialBegun(event.time, trial.number, trial.practice, step.attempt, trial.levels)
+        session = _emit(replace(session, stage=adjustment.handle(session.stage, event)), begun)
+    return session
+
+
+# Pages
+
+
+def _on_page(session: Session, form: Form, event: Event) -> Session:
+    form = handle_form(form, event)
+    session = replace(session, stage=form)
+    if not form.pressed:
+        return session
+    step, time = session.step, event.time
+    left = PageShown(time, step.id, session.shown if session.shown is not None else time)
+    if isinstance(step, QuestionsStep):
+        session = _emit(session, *_answers(step, form.values, time), left)
+    elif isinstance(step, TextStep) and step.kind == "consent":
+        session = _emit(session, Consented(time, form.pressed == "agree"))
+        if form.pressed != "agree":
+            return _declined(session, time)
+    elif isinstance(step, TextStep) and step.kind == "declined":
+        return replace(session, ended="declined")
+    elif isinstance(step, TextStep) and step.kind == "debrief":
+        return replace(_emit(session, left), ended="finished")
+    else:
+        session = _emit(session, left)
+        if isinstance(step, TextStep) and step.kind == "break":
+            since = session.shown if session.shown is not None else time
+            session = _emit(session, Paused(since, "set break"), Resumed(time, time - since))
+    return _entered(session, session.index + 1, time)
+
+
+def _answers(step: QuestionsStep, values: Mapping[str, str], time: float) -> list[Record]:
+    answers: list[Record] = []
+    for question in step.questions:
+        value = values.get(question.id, "").strip()
+        answers.append(Answered(time, question.id, int(value) if question.kind == "number" else value))
+    return answers
+
+
+def _declined(session: Session, time: float) -> Session:
+    """A polite last page; the end is recorded at once, so that closing the window adds nothing."""
+    page = TextStep("declined", session.plan.study.pages.declined, "declined")
+    plan = replace(session.plan, steps=(page,))
+    return replace(
+        _emit(session, Ended(time, "declined")), plan=plan, index=0, stage=Form(), shown=None
+    )
+
+
+# Trials
+
+
+def _in_trial(session: Session, trial: AdjustmentTrial, event: Event) -> Session:
+    step = session.step
+    assert isinstance(step, TrialStep)
+    keys = session.plan.study.task.keys
+    if isinstance(event, (KeyDown, KeyUp)) and trial.stage is adjustment.Stage.ADJUSTING:
+        task = trial.task
+        if event.key in (task.lower_key, task.raise_key, task.confirm_key):
+            down = isinstance(event, KeyDown)
+            session = _emit(session, Key(event.time, step.trial.number, step.trial.practice, event.key, down))
+        if isinstance(event, KeyDown) and event.key == keys.take_break:
+            return _paused(session, event, "break")
+    if isinstance(event, FocusLost) and trial.held:
+        session = _emit(session, Key(event.time, step.trial.number, step.trial.practice, "focus", False))
+    trial = adjustment.handle(trial, event)
+    session = replace(session, stage=trial)
+    if not trial.done:
+        return session
+    record = _trial_record(session, step, trial, event.time)
+    return replace(
+        _emit(session, record), stage=Interval(event.time + session.plan.study.interval), shown=None
+    )
+
+
+def _trial_record(session: Session, step: TrialStep, trial: AdjustmentTrial, time: float) -> TrialRecord:
+    return TrialRecord(
+        time=time,
+        number=step.trial.number,
+        practice=step.trial.practice,
+        attempt=step.attempt,
+        block=step.trial.block,
+        repetition=step.trial.repetition,
+        factors=step.trial.levels,
+        response={
+            "step_frequency": trial.setting,
+            "step_length": trial.step_length,
+            "walk_ratio": trial.walk_ratio,
+        },
+        onset=trial.onset,
+        response_time=trial.looked,
+        key_presses=trial.key_presses,
+        reversals=trial.reversals,
+        early_confirms=trial.early_confirms,
+        pauses=session.pauses,
+    )
+
+
+# Pauses
+
+
+def _paused(session: Session, event: KeyDown, why: str) -> Session:
+    words = session.plan.study.words
+    buttons = (("resume", words.resume), ("stop", words.stop)) if why == "pause" else (("resume", words.resume),)
+    stage = session.stage
+    if isinstance(stage, AdjustmentTrial):
+        stage = replace(adjustment.advance(stage, event.time), held=frozenset())
+    overlay = Overlay(why, event.time, Form(buttons=buttons, focus=0))
+    session = replace(session, stage=stage, overlay=overlay, pauses=session.pauses + 1)
+    return _emit(session, Paused(event.time, why))
+
+
+def _overlaid(session: Session, overlay: Overlay, event: Event) -> Session:
+    words = session.plan.study.words
+    if isinstance(event, KeyDown) and event.key == "escape":
+        return _resumed(session, overlay, event.time)
+    form = handle_form(overlay.form, event)
+    if form.pressed == "resume":
+        return _resumed(session, overlay, event.time)
+    if form.pressed == "stop":
+        really = Form(buttons=(("resume", words.resume), ("stop_really", words.stop_really)), focus=0)
+        return replace(session, overlay=replace(overlay, why="stop", form=really))
+    if form.pressed == "stop_really":
+        return _ended(session, event.time, "stopped")
+    return replace(session, overlay=replace(overlay, form=form))
+
+
+def _resumed(session: Session, overlay: Overlay, time: float) -> Session:
+    stage = session.stage
+    if isinstance(stage, AdjustmentTrial):
+        stage = adjustment.resumed(stage, time)
+    if isinstance(stage, Interval):
+        stage = replace(stage, until=max(stage.until, time))
+    return _emit(replace(session, stage=stage, overlay=None), Resumed(time, time - overlay.since))
+
+
+# Going on after a stop or a crash
+
+
+@dataclass(frozen=True)
+class Progress:
+    """What a journal says has already happened in a run.
+
+    left:     ids of the pages left and trials finished.
+    begun:    how often each trial was begun, by step id.
+    consented, finished: whether the participant agreed, and whether the run is over.
+    """
+
+    left: frozenset[str] = frozenset()
+    begun: Mapping[str, int] = field(default_factory=dict)
+    consented: bool = False
+    finished: bool = False
+
+
+def remaining(plan: Plan, progress: Progress) -> Plan:
+    """The plan without what is done: the same order, the interrupted trial again as its next attempt.
+
+    A page welcomes the participant back. Breaks before the first unfinished trial are not repeated.
+    """
+    left = set(progress.left) | ({"consent"} if progress.consented else set())
+    steps: list[Step] = []
+    for step in plan.steps:
+        if step.id in left or (isinstance(step, TextStep) and step.kind == "break" and not _trials(steps)):
+            continue
+        if isinstance(step, TrialStep):
+            step = replace(step, attempt=progress.begun.get(step.id, 0) + 1)
+        steps.append(step)
+    if progress.consented:
+        following = next((s.trial.number for s in _trials(steps) if not s.trial.practice), plan.total)
+        words = plan.study.words
+        text = words.welcome_back_text.replace("{next}", str(following)).replace("{total}", str(plan.total))
+        steps.insert(0, TextStep("welcome-back", TextPage(title=words.welcome_back, text=text)))
+    return replace(plan, steps=tuple(steps))
+
+
+def _trials(steps: list[Step]) -> list[TrialStep]:
+    return [step for step in steps if isinstance(step, TrialStep)]

@@ -1,0 +1,293 @@
+"""The study file as types: what an experimenter may write, with limits and units. Knows no file and no motion.
+
+The models are the single source of the JSON Schema (`gaitlab schema`) and of the messages of `gaitlab check`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Level = str | float | int
+Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=40)]
+Text = Annotated[str, Field(min_length=1)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Speed = Annotated[float, Field(strict=True, gt=0.0, le=3.0)]
+StepFrequency = Annotated[float, Field(strict=True, ge=30.0, le=240.0)]
+Reference = Annotated[str, Field(pattern=r"^\$[A-Za-z][A-Za-z0-9_]*$")]
+Key = Literal[
+    "left", "right", "up", "down", "enter", "space", "escape", "tab", "backspace",
+    "a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m",
+    "n", "o", "p", "q", "r", "s", "t", "u", "v", "w", "x", "y", "z",
+    "0", "1", "2", "3", "4", "5", "6", "7", "8", "9",
+]  # fmt: skip
+
+
+class Part(BaseModel):
+    """Every part of a study file: unknown keys are refused, values never change after reading."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class TextPage(Part):
+    """A page the participant reads."""
+
+    title: Text = Field(description="Heading of the page.")
+    text: Text = Field(description="Paragraphs, separated by empty lines; any script.")
+
+
+class ChoiceQuestion(Part):
+    """A question answered by choosing one of several options."""
+
+    id: Name = Field(description="Column of the answer in the tables.")
+    kind: Literal["choice"]
+    prompt: Text
+    options: dict[Name, Text] = Field(
+        min_length=2, max_length=9, description="Value stored: label the participant reads."
+    )
+
+
+class NumberQuestion(Part):
+    """A question answered by typing a whole number."""
+
+    id: Name
+    kind: Literal["number"]
+    prompt: Text
+    minimum: int = Field(0, strict=True)
+    maximum: int = Field(120, strict=True)
+
+
+class TextQuestion(Part):
+    """A question answered by typing words; never used as a factor."""
+
+    id: Name
+    kind: Literal["text"]
+    prompt: Text
+    required: bool = True
+    max_length: int = Field(200, ge=1, le=1000, strict=True)
+
+
+Question = Annotated[ChoiceQuestion | NumberQuestion | TextQuestion, Field(discriminator="kind")]
+
+
+class Participants(Part):
+    """Who takes part and what they are asked."""
+
+    planned: int = Field(ge=1, le=100_000, strict=True, description="Number of participants planned.")
+    between: dict[Name, Annotated[list[Name], Field(min_length=2)]] = Field(
+        default_factory=dict, description="Between-participant factors: a choice question's id and its levels."
+    )
+    questions: list[Question] = Field(default_factory=list, description="Asked after consent, in this order.")
+
+
+class Practice(Part):
+    """One training trial: a value for every factor that the stimulus and the task refer to."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    @property
+    def levels(self) -> dict[str, Any]:
+        """Factor name to the value this training trial uses."""
+        return dict(self.model_extra or {})
+
+
+class CameraView(Part):
+    """Where the walker is seen from."""
+
+    view: Literal["three_quarter", "side", "front", "legs"] = Field(
+        "three_quarter", description="three_quarter and front follow the walker; side and legs too."
+    )
+    distance: float = Field(5.0, strict=True, ge=1.0, le=50.0, description="m from camera to walker.")
+    height: float = Field(1.6, strict=True, ge=0.1, le=10.0, description="m above the ground.")
+    field_of_view: float = Field(30.0, strict=True, ge=5.0, le=100.0, description="Vertical, degrees.")
+
+
+class Stimulus(Part):
+    """What walks: each value is a constant or `$factor`, the level of that factor in the trial."""
+
+    actor: Text = Field(description="An actor's name, or $factor.")
+    speed: Reference | Speed = Field(description="Walking speed, m/s, or $factor.")
+    body: Text | None = Field(None, description="A body's name or $factor; the actor's own when left out.")
+    ground: Literal["open_ground", "treadmill"] = "open_ground"
+    camera: CameraView = CameraView()
+
+
+class AdjustmentKeys(Part):
+    """Keys of the adjustment task."""
+
+    lower: Key = "left"
+    raise_: Key = Field("right", alias="raise")
+    confirm: Key = "enter"
+    take_break: Key = Field("b", alias="break")
+    counterbalanced: bool = Field(
+        False, description="Swap lower and raise for every second participant."
+    )
+
+
+class AdjustmentRange(Part):
+    """The step frequencies the participant can reach."""
+
+    minimum: StepFrequency = Field(80.0, description="steps/min")
+    maximum: StepFrequency = Field(120.0, description="steps/min")
+
+
+class Adjustment(Part):
+    """Method of adjustment: hold a key to change step frequency at constant speed, confirm when most natural."""
+
+    kind: Literal["adjustment"]
+    start: Reference | StepFrequency = Field(description="Step frequency at onset, steps/min, or $factor.")
+    range: AdjustmentRange = AdjustmentRange()
+    rate: float = Field(10.0, strict=True, gt=0.0, le=200.0, description="steps/min per second of holding.")
+    minimum_looking_time: float = Field(
+        1.0, strict=True, ge=0.0, le=60.0, description="s before the confirm key is accepted."
+    )
+    keys: AdjustmentKeys = AdjustmentKeys()
+
+
+class Breaks(Part):
+    """When the participant is offered a rest."""
+
+    every: int = Field(ge=1, strict=True, description="Trials between two breaks.")
+    title: Text = "Time for a break"
+    text: Text = "You have completed {done} of {total} trials.\n\nRest your eyes, then press Enter to go on."
+
+
+class Pages(Part):
+    """What the participant reads. {actor}-like placeholders are not used here; see each page's own."""
+
+    consent: TextPage
+    declined: TextPage = TextPage(
+        title="Thank you", text="You chose not to take part. Nothing about you has been stored."
+    )
+    instructions: list[TextPage] = Field(min_length=1)
+    before_practice: TextPage | None = None
+    before_trials: TextPage | None = None
+    debrief: TextPage
+
+
+class Words(Part):
+    """Short texts of the screen, so that a study can be in any language."""
+
+    agree: Text = "I agree to take part"
+    decline: Text = "I do not want to take part"
+    next: Text = "Continue"
+    choose_hint: Text = "Click, or choose with the arrow keys and press Enter"
+    page_hint: Text = "Press Enter to continue"
+    question_hint: Text = "Move with Tab or the arrow keys, type or choose, then press Enter"
+    questions_title: Text = "A few questions about you"
+    missing: Text = "Please answer this question."
+    not_a_number: Text = "Please type a whole number from {minimum} to {maximum}."
+    pause_title: Text = "Paused"
+    pause_text: Text = "The walker waits for you."
+    resume: Text = "Go on"
+    stop: Text = "Stop the session"
+    stop_title: Text = "Stop the session?"
+    stop_text: Text = "Everything you have answered so far is kept. You can come back later."
+    stop_really: Text = "Yes, stop"
+    break_title: Text = "Break"
+    break_text: Text = "Rest as long as you like. The walker waits for you."
+    welcome_back: Text = "Welcome back"
+    welcome_back_text: Text = "You will go on where you left off: trial {next} of {total}."
+    finished_hint: Text = "Press Enter to close"
+    trial_caption: Text = ""
+
+
+class Anova(Part):
+    """Factors of the repeated-measures analysis of variance."""
+
+    within: list[Name] = Field(default_factory=list)
+    between: list[Name] = Field(default_factory=list)
+
+
+class PostHoc(Part):
+    """Pairwise comparisons of the significant effects."""
+
+    adjust: Literal["tukey", "bonferroni", "holm", "none"] = "tukey"
+    model: Literal["multivariate", "univariate"] = "multivariate"
+
+
+class TTest(Part):
+    """One-sample t-tests of every level of a factor against given values."""
+
+    each: Name
+    against: dict[str, Number] = Field(min_length=1, description="Level: value to test against.")
+    label: Text = "reference value"
+
+
+class Figure(Part):
+    """A figure of the report."""
+
+    kind: Literal["means", "interaction"]
+    x: Name
+    lines: Name | None = None
+    reference: Text | None = Field(None, description="Label of the t-test whose values are drawn as diamonds.")
+
+
+class Exclusion(Part):
+    """Trials left out of the analysis, with the reason the report gives."""
+
+    where: Text = Field(description="A condition on one column, as `late_frames > 5`.")
+    reason: Text
+
+
+class Analysis(Part):
+    """The analysis planned before the data."""
+
+    measure: Literal["walk_ratio", "step_frequency", "step_length", "response_time"] = "walk_ratio"
+    label: Text = "Walk ratio"
+    unit: str = "m·min"
+    anova: Anova
+    post_hoc: PostHoc | None = PostHoc()
+    t_tests: list[TTest] = Field(default_factory=list)
+    normality: Literal["shapiro_wilk"] | None = "shapiro_wilk"
+    figures: list[Figure] = Field(default_factory=list)
+    exclusions: list[Exclusion] = Field(default_factory=list)
+
+
+class Preference(Part):
+    """A simulated population's preferred walk ratio for one actor: normal over participants."""
+
+    mean: Annotated[float, Field(strict=True, gt=0.0, lt=0.05)] = Field(description="m·min")
+    sd: Annotated[float, Field(strict=True, ge=0.0, lt=0.05)] = Field(description="m·min, between participants")
+
+
+class Simulation(Part):
+    """Simulated observers: what `gaitlab simulate` uses when nobody sits at the screen."""
+
+    preferred_walk_ratio: dict[str, Preference] = Field(min_length=1, description="Actor: preference.")
+    shared: float = Field(
+        0.5, strict=True, ge=0.0, le=1.0, description="Correlation of a participant's preferences over actors."
+    )
+    trial_noise: float = Field(
+        0.0006, strict=True, ge=0.0, lt=0.05, description="m·min, s.d. from trial to trial."
+    )
+    anchoring: float = Field(
+        0.0, strict=True, ge=0.0, lt=1.0, description="Share of the way back to the start value at which to stop."
+    )
+
+
+class Study(Part):
+    """A whole study: participants, design, stimulus, task, texts, planned analysis."""
+
+    study: Name = Field(description="Short name: folder of the data and column of the tables.")
+    title: Text
+    about: Text = Field(description="What the study asks and where it comes from.")
+    language: str = Field("en", pattern=r"^[a-z]{2,3}(-[A-Za-z0-9]+)*$")
+    participants: Participants
+    factors: dict[Name, Annotated[list[Level], Field(min_length=1)]] = Field(
+        min_length=1, description="Within-participant factors and their levels, in the order of the tables."
+    )
+    repetitions: int = Field(ge=1, le=1000, strict=True, description="Trials per condition.")
+    order: Literal["random", "blocked", "sequential"] = Field(
+        "random", description="random: all trials shuffled; blocked: every condition once per block, shuffled."
+    )
+    practice: list[Practice] = Field(default_factory=list, description="Training trials, in this order.")
+    breaks: Breaks | None = None
+    stimulus: Stimulus
+    task: Adjustment
+    interval: float = Field(0.5, strict=True, ge=0.1, le=10.0, description="s of empty screen between trials.")
+    pages: Pages
+    words: Words = Words()
+    analysis: Analysis
+    simulation: Simulation | None = None

@@ -1,0 +1,242 @@
+"""Reads a study file: YAML 1.2 to a Study, or every mistake at once with its line and column.
+
+Knows YAML and the study's types; it knows no actor, body or window, so names of those are checked elsewhere.
+"""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from protocols.study import Study
+
+Place = tuple[str | int, ...]
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """One thing wrong in a study file.
+
+    where: keys and list positions from the top, as ("factors", "speed", 0); on_key: the key itself is at fault.
+    """
+
+    where: Place
+    message: str
+    on_key: bool = False
+    line: int = 1
+    column: int = 1
+
+
+class StudyFileError(ValueError):
+    """A study file that cannot be used; str() gives one line per mistake, `file:line:column: where: message`."""
+
+    def __init__(self, name: str, mistakes: Sequence[Mistake]) -> None:
+        self.name = name
+        self.mistakes = tuple(sorted(mistakes, key=lambda m: (m.line, m.column)))
+        super().__init__("\n".join(_sentence(name, m) for m in self.mistakes))
+
+
+@dataclass(frozen=True)
+class StudyFile:
+    """A study with the text it was read from.
+
+    hash: SHA-256 of the text, hexadecimal; document: the YAML tree, kept for the positions of later mistakes.
+    """
+
+    name: str
+    text: str
+    study: Study
+    document: Any
+
+    @property
+    def hash(self) -> str:
+        """SHA-256 of the file's UTF-8 text, as hexadecimal."""
+        return hashlib.sha256(self.text.encode("utf-8")).hexdigest()
+
+    def error(self, mistakes: Iterable[Mistake]) -> StudyFileError:
+        """The mistakes, found by a later check, as an error with positions in this file."""
+        return StudyFileError(self.name, [_placed(self.document, m) for m in mistakes])
+
+
+def shipped_studies() -> tuple[str, ...]:
+    """Names of the studies that come with gaitlab, in alphabetical order."""
+    folder = files("protocols") / "studies"
+    return tuple(sorted(p.name.removesuffix(".yaml") for p in folder.iterdir() if p.name.endswith(".yaml")))
+
+
+def find_study(study: str) -> tuple[str, bytes]:
+    """The display name and the bytes of a study file: a path, or the name of a shipped study.
+
+    Raises FileNotFoundError with a sentence when neither exists.
+    """
+    path = Path(study)
+    if path.is_file():
+        return str(path), path.read_bytes()
+    if study in shipped_studies():
+        return f"{study}.yaml", (files("protocols") / "studies" / f"{study}.yaml").read_bytes()
+    near = difflib.get_close_matches(study, shipped_studies(), n=1)
+    hint = f" Did you mean {near[0]}?" if near else ""
+    raise FileNotFoundError(
+        f"{study}: there is no such file and no shipped study of that name "
+        f"(shipped: {', '.join(shipped_studies())}).{hint}"
+    )
+
+
+def read_study(study: str) -> StudyFile:
+    """The study of a file or of a shipped name; raises FileNotFoundError or StudyFileError."""
+    name, raw = find_study(study)
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw[: error.start].count(b"\n") + 1
+        column = error.start - (raw.rfind(b"\n", 0, error.start) + 1) + 1
+        message = f"byte 0x{raw[error.start]:02x} is not UTF-8; save the file with the encoding UTF-8"
+        raise StudyFileError(name, [Mistake((), message, line=line, column=column)]) from None
+    return parse_study(name, text)
+
+
+def parse_study(name: str, text: str) -> StudyFile:
+    """The study of a text; `name` is used in messages only. Raises StudyFileError."""
+    document = _load_yaml(name, text)
+    if not isinstance(document, dict):
+        found = "empty" if document is None else f"a {type(document).__name__}"
+        message = f"the file is {found}; a study file holds keys such as study, participants, factors, task"
+        raise StudyFileError(name, [Mistake((), message)])
+    try:
+        study = Study.model_validate(_plain(document))
+    except ValidationError as error:
+        mistakes = [_placed(document, _explain(e)) for e in error.errors(include_url=False)]
+        raise StudyFileError(name, mistakes) from None
+    return StudyFile(name, text, study, document)
+
+
+def _load_yaml(name: str, text: str) -> Any:
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import MarkedYAMLError, YAMLError
+
+    try:
+        return YAML(typ="rt").load(StringIO(text))
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
+        problem = (error.problem or "not valid YAML").split("\n")[0]
+        if "\\t" in problem:
+            problem = "a tab cannot indent or begin a value in YAML; use spaces"
+        elif problem.startswith("found duplicate key"):
+            problem = problem.split(" with value")[0] + "; keep one of the two"
+        raise StudyFileError(name, [Mistake((), problem, line=line, column=column)]) from None
+    except (YAMLError, ValueError, RecursionError) as error:
+        reason = str(error).split("\n")[0] or type(error).__name__
+        raise StudyFileError(name, [Mistake((), f"not valid YAML: {reason}")]) from None
+
+
+def _plain(node: Any) -> Any:
+    """The YAML tree as plain dict, list and scalars: ruamel's scalar subclasses would fail strict numbers."""
+    if isinstance(node, dict):
+        return {_plain(key): _plain(value) for key, value in node.items()}
+    if isinstance(node, list):
+        return [_plain(value) for value in node]
+    for kind in (bool, int, float, str):
+        if isinstance(node, kind):
+            return kind(node)
+    return node
+
+
+def _explain(error: Any) -> Mistake:
+    """One of pydantic's errors in the words of an experimenter."""
+    where: Place = tuple(part for part in error["loc"] if not _is_type_tag(part))
+    kind, value, limits = error["type"], error["input"], error.get("ctx") or {}
+    shown = repr(value) if len(repr(value)) <= 60 else repr(value)[:57] + "..."
+    if kind == "extra_forbidden":
+        allowed = _allowed_keys(where[:-1])
+        near = difflib.get_close_matches(str(where[-1]), allowed, n=1, cutoff=0.6)
+        way = f"did you mean {near[0]}?" if near else f"allowed here: {', '.join(allowed)}"
+        return Mistake(where, f"unknown key; {way}", on_key=True)
+    if kind == "missing":
+        return Mistake(where, "this key is missing", on_key=True)
+    if kind in ("greater_than_equal", "greater_than", "less_than_equal", "less_than"):
+        words = {"ge": "at least", "gt": "more than", "le": "at most", "lt": "less than"}
+        limit = " and ".join(f"{words[k]} {v:g}" for k, v in limits.items() if k in words)
+        return Mistake(where, f"{shown} is out of range; it must be {limit}")
+    if kind in ("literal_error", "union_tag_invalid"):
+        expected = str(limits.get("expected") or limits.get("expected_tags")).replace("'", "")
+        near = difflib.get_close_matches(str(value), [w.strip() for w in expected.replace(" or ", ",").split(",")])
+        hint = f"; did you mean {near[0]}?" if near else ""
+        if len(expected) > 160:
+            expected = "the names of keys, as left, right, enter, space, a, 1"
+        return Mistake(where, f"{shown} is not allowed; allowed: {expected}{hint}")
+    if kind == "string_pattern_mismatch":
+        return Mistake(where, f"{shown} does not fit; letters, digits and _ only, starting with a letter")
+    if kind in ("too_short", "too_long"):
+        return Mistake(where, f"needs {error['msg'].split('should have ')[-1]}")
+    message = error["msg"][0].lower() + error["msg"][1:]
+    return Mistake(where, f"{shown}: {message.replace('input should be', 'must be')}")
+
+
+def _is_type_tag(part: Any) -> bool:
+    """True for the branch names that pydantic puts into the location of a union (not keys of the file)."""
+    return isinstance(part, str) and (
+        part in {"choice", "number", "text", "str", "float", "int", "[key]"} - {"text"}
+        or part.startswith(("constrained-", "function-"))
+    )
+
+
+def _allowed_keys(where: Place) -> list[str]:
+    """Keys that may stand at a place of the study file."""
+    model: Any = Study
+    for part in where:
+        if isinstance(part, int):
+            continue
+        fields = {f.alias or n: f for n, f in model.model_fields.items()} if _is_model(model) else {}
+        model = _model_in(fields[part].annotation) if part in fields else None
+        if model is None:
+            return []
+    return [f.alias or n for n, f in model.model_fields.items()] if _is_model(model) else []
+
+
+def _is_model(kind: Any) -> bool:
+    return isinstance(kind, type) and issubclass(kind, BaseModel)
+
+
+def _model_in(annotation: Any) -> Any:
+    """The first study part named in a type annotation such as list[Part] or Part | None."""
+    if _is_model(annotation):
+        return annotation
+    for argument in getattr(annotation, "__args__", ()):
+        found = _model_in(argument)
+        if found is not None:
+            return found
+    return None
+
+
+def _placed(document: Any, mistake: Mistake) -> Mistake:
+    """The mistake with the line and column of its place in the file (both from 1)."""
+    if not mistake.where:
+        return mistake
+    node, line, column = document, 0, 0
+    for depth, part in enumerate(mistake.where):
+        last = depth == len(mistake.where) - 1
+        try:
+            if isinstance(node, list):
+                line, column = node.lc.item(part)  # type: ignore[attr-defined]
+            elif last and mistake.on_key:
+                line, column = node.lc.key(part)
+            else:
+                line, column = node.lc.value(part)
+            node = node[part]
+        except (AttributeError, KeyError, IndexError, TypeError):
+            break
+    return Mistake(mistake.where, mistake.message, mistake.on_key, line + 1, column + 1)
+
+
+def _sentence(name: str, mistake: Mistake) -> str:
+    where = "".join(f"[{p}]" if isinstance(p, int) else f".{p}" for p in mistake.where).lstrip(".")
+    return f"{name}:{mistake.line}:{mistake.column}: {where + ': ' if where else ''}{mistake.message}"
