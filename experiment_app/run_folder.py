@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from experiment_app.errors import UsageError
-from protocols.record import DamagedLine, decode_line
+from protocols.record import DamagedLineError, decode_line
 from protocols.session import Progress
 
 PARTICIPANT = re.compile(r"[A-Za-z0-9]{1,32}")
@@ -110,7 +110,7 @@ def journal_lines(path: Path) -> tuple[tuple[dict[str, Any], ...], int]:
             return tuple(lines), 0
         try:
             lines.append(decode_line(part.decode("utf-8")))
-        except (DamagedLine, UnicodeDecodeError) as error:
+        except (DamagedLineError, UnicodeDecodeError) as error:
             if number >= len(parts) - 1 and not any(parts[number:]):
                 return tuple(lines), len(raw) - len(b"\n".join(parts[: number - 1])) - (number > 1)
             raise UsageError(

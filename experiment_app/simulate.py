@@ -18,9 +18,7 @@ from protocols.study_file import Mistake, StudyFile
 DISPLAY = {"window": "undrawn"}
 
 
-def simulate(
-    study: StudyFile, participants: int, data: Path, seed: int = 0, first: int = 1
-) -> Iterator[Run]:
+def simulate(study: StudyFile, participants: int, data: Path, seed: int = 0, first: int = 1) -> Iterator[Run]:
     """Runs participants S001, S002, ... to the end and yields each run; finished ones are left as they are.
 
     seed: the same seed gives the same participants, answers and responses. first: number of the first.

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
+from experiment_app.scene import Box, Camera, Line, Page, Row, Scene, Walker
 from protocols.adjustment import AdjustmentTrial
 from protocols.form import Choice, Form
 from protocols.plan import QuestionsStep, TextStep, TrialStep, value_of
 from protocols.session import Interval, Overlay, Session
 from protocols.study import Study
 
-from experiment_app.scene import Box, Camera, Line, Page, Row, Scene, Walker
-
 
 def stage(session: Session) -> Scene:
     """The scene of a session at its present time."""
     if session.overlay is not None:
         scene = _trial_scene(session) if session.trial is not None else Scene(page=None)
-        return Scene(
-            scene.walkers, scene.camera, scene.ground, _overlay_page(session, session.overlay), caption=""
-        )
+        return Scene(scene.walkers, scene.camera, scene.ground, _overlay_page(session, session.overlay), caption="")
     if isinstance(session.stage, AdjustmentTrial):
         return _trial_scene(session)
     if isinstance(session.stage, Interval):
@@ -75,8 +72,7 @@ def _rows(form: Form) -> tuple[Row, ...]:
         value, focused = form.values.get(item.id, ""), form.focus == i
         if isinstance(item, Choice):
             boxes = tuple(
-                Box(f"{item.id}:{option}", label, "option", option == value, focused)
-                for option, label in item.options
+                Box(f"{item.id}:{option}", label, "option", option == value, focused) for option, label in item.options
             )
         else:
             boxes = (Box(item.id, value, "field", focused=focused),)
@@ -84,8 +80,7 @@ def _rows(form: Form) -> tuple[Row, ...]:
     if form.buttons:
         first = len(form.fields)
         buttons = tuple(
-            Box(name, label, "button", focused=form.focus == first + i)
-            for i, (name, label) in enumerate(form.buttons)
+            Box(name, label, "button", focused=form.focus == first + i) for i, (name, label) in enumerate(form.buttons)
         )
         rows.append(Row("", buttons))
     return tuple(rows)

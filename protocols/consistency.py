@@ -64,7 +64,10 @@ def _references(study: Study) -> Iterator[Mistake]:
     for factor, place in referred_factors(study).items():
         if factor not in study.factors:
             yield Mistake(place, _unknown(f"${factor}", [f"${f}" for f in study.factors], "factor"))
-    for place, value in ((("stimulus", "speed"), study.stimulus.speed), (("task", "start"), study.task.start)):
+    for place, value in (
+        (("stimulus", "speed"), study.stimulus.speed),
+        (("task", "start"), study.task.start),
+    ):
         if isinstance(value, str) and value[1:] in study.factors:
             for i, level in enumerate(study.factors[value[1:]]):
                 if not isinstance(level, (int, float)):
@@ -87,7 +90,7 @@ def _practice(study: Study) -> Iterator[Mistake]:
             elif all(isinstance(known, (int, float)) for known in study.factors[factor]):
                 if isinstance(level, bool) or not isinstance(level, (int, float)):
                     yield Mistake(where, f"{level!r} is not a number")
-            elif not isinstance(level, str):
+            elif all(isinstance(known, str) for known in study.factors[factor]) and not isinstance(level, str):
                 yield Mistake(where, f"{level!r} is not a name")
 
 
@@ -138,7 +141,10 @@ def _between(study: Study) -> Iterator[Mistake]:
 def _planned_analysis(study: Study) -> Iterator[Mistake]:
     plan = study.analysis
     within, between = list(study.factors), list(study.participants.between)
-    for kind, names, known in (("within", plan.anova.within, within), ("between", plan.anova.between, between)):
+    for kind, names, known in (
+        ("within", plan.anova.within, within),
+        ("between", plan.anova.between, between),
+    ):
         for i, name in enumerate(names):
             if name not in known:
                 yield Mistake(("analysis", "anova", kind, i), _unknown(name, known, f"{kind} factor"))

@@ -176,7 +176,7 @@ Record = (
 )  # fmt: skip
 
 
-class DamagedLine(ValueError):
+class DamagedLineError(ValueError):
     """A line of a journal that is not what was written."""
 
 
@@ -189,17 +189,17 @@ def encode_line(record: Record) -> str:
 
 
 def decode_line(line: str) -> dict[str, Any]:
-    """The members of a line without its checksum; raises DamagedLine when the line is torn or altered."""
+    """The members of a line without its checksum; raises DamagedLineError when the line is torn or altered."""
     head, mark, tail = line.rstrip("\r\n").rpartition(',"crc":"')
     if not mark or not tail.endswith('"}'):
-        raise DamagedLine("the line has no checksum; it was cut off while being written")
+        raise DamagedLineError("the line has no checksum; it was cut off while being written")
     text = head + "}"
     if tail[:-2] != _checksum(text):
-        raise DamagedLine("the line does not match its checksum; it was altered or cut off")
+        raise DamagedLineError("the line does not match its checksum; it was altered or cut off")
     try:
         values = json.loads(text)
     except ValueError as error:
-        raise DamagedLine(f"the line is not JSON: {error}") from None
+        raise DamagedLineError(f"the line is not JSON: {error}") from None
     return dict(values)
 
 

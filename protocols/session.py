@@ -229,9 +229,7 @@ def _declined(session: Session, time: float) -> Session:
     """A polite last page; the end is recorded at once, so that closing the window adds nothing."""
     page = TextStep("declined", session.plan.study.pages.declined, "declined")
     plan = replace(session.plan, steps=(page,))
-    return replace(
-        _emit(session, Ended(time, "declined")), plan=plan, index=0, stage=Form(), shown=None
-    )
+    return replace(_emit(session, Ended(time, "declined")), plan=plan, index=0, stage=Form(), shown=None)
 
 
 # Trials
@@ -255,9 +253,7 @@ def _in_trial(session: Session, trial: AdjustmentTrial, event: Event) -> Session
     if not trial.done:
         return session
     record = _trial_record(session, step, trial, event.time)
-    return replace(
-        _emit(session, record), stage=Interval(event.time + session.plan.study.interval), shown=None
-    )
+    return replace(_emit(session, record), stage=Interval(event.time + session.plan.study.interval), shown=None)
 
 
 def _trial_record(session: Session, step: TrialStep, trial: AdjustmentTrial, time: float) -> TrialRecord:

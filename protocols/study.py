@@ -76,7 +76,8 @@ class Participants(Part):
 
     planned: int = Field(ge=1, le=100_000, strict=True, description="Number of participants planned.")
     between: dict[Name, Annotated[list[Name], Field(min_length=2)]] = Field(
-        default_factory=dict, description="Between-participant factors: a choice question's id and its levels."
+        default_factory=dict,
+        description="Between-participant factors: a choice question's id and its levels.",
     )
     questions: list[Question] = Field(default_factory=list, description="Asked after consent, in this order.")
 
@@ -120,9 +121,7 @@ class AdjustmentKeys(Part):
     raise_: Key = Field("right", alias="raise")
     confirm: Key = "enter"
     take_break: Key = Field("b", alias="break")
-    counterbalanced: bool = Field(
-        False, description="Swap lower and raise for every second participant."
-    )
+    counterbalanced: bool = Field(False, description="Swap lower and raise for every second participant.")
 
 
 class AdjustmentRange(Part):
@@ -257,13 +256,19 @@ class Simulation(Part):
 
     preferred_walk_ratio: dict[str, Preference] = Field(min_length=1, description="Actor: preference.")
     shared: float = Field(
-        0.5, strict=True, ge=0.0, le=1.0, description="Correlation of a participant's preferences over actors."
+        0.5,
+        strict=True,
+        ge=0.0,
+        le=1.0,
+        description="Correlation of a participant's preferences over actors.",
     )
-    trial_noise: float = Field(
-        0.0006, strict=True, ge=0.0, lt=0.05, description="m·min, s.d. from trial to trial."
-    )
+    trial_noise: float = Field(0.0006, strict=True, ge=0.0, lt=0.05, description="m·min, s.d. from trial to trial.")
     anchoring: float = Field(
-        0.0, strict=True, ge=0.0, lt=1.0, description="Share of the way back to the start value at which to stop."
+        0.0,
+        strict=True,
+        ge=0.0,
+        lt=1.0,
+        description="Share of the way back to the start value at which to stop.",
     )
 
 
@@ -280,7 +285,8 @@ class Study(Part):
     )
     repetitions: int = Field(ge=1, le=1000, strict=True, description="Trials per condition.")
     order: Literal["random", "blocked", "sequential"] = Field(
-        "random", description="random: all trials shuffled; blocked: every condition once per block, shuffled."
+        "random",
+        description="random: all trials shuffled; blocked: every condition once per block, shuffled.",
     )
     practice: list[Practice] = Field(default_factory=list, description="Training trials, in this order.")
     breaks: Breaks | None = None

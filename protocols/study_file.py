@@ -20,6 +20,8 @@ from protocols.study import Study
 
 Place = tuple[str | int, ...]
 
+MISSING = "this key is missing"
+
 
 @dataclass(frozen=True)
 class Mistake:
@@ -113,8 +115,8 @@ def parse_study(name: str, text: str) -> StudyFile:
     try:
         study = Study.model_validate(_plain(document))
     except ValidationError as error:
-        mistakes = [_placed(document, _explain(e)) for e in error.errors(include_url=False)]
-        raise StudyFileError(name, mistakes) from None
+        mistakes = _without_echoes([_explain(e) for e in error.errors(include_url=False)])
+        raise StudyFileError(name, [_placed(document, m) for m in mistakes]) from None
     return StudyFile(name, text, study, document)
 
 
@@ -161,7 +163,7 @@ def _explain(error: Any) -> Mistake:
         way = f"did you mean {near[0]}?" if near else f"allowed here: {', '.join(allowed)}"
         return Mistake(where, f"unknown key; {way}", on_key=True)
     if kind == "missing":
-        return Mistake(where, "this key is missing", on_key=True)
+        return Mistake(where, MISSING, on_key=True)
     if kind in ("greater_than_equal", "greater_than", "less_than_equal", "less_than"):
         words = {"ge": "at least", "gt": "more than", "le": "at most", "lt": "less than"}
         limit = " and ".join(f"{words[k]} {v:g}" for k, v in limits.items() if k in words)
@@ -179,6 +181,12 @@ def _explain(error: Any) -> Mistake:
         return Mistake(where, f"needs {error['msg'].split('should have ')[-1]}")
     message = error["msg"][0].lower() + error["msg"][1:]
     return Mistake(where, f"{shown}: {message.replace('input should be', 'must be')}")
+
+
+def _without_echoes(mistakes: Sequence[Mistake]) -> list[Mistake]:
+    """The mistakes without "missing" where a misspelt key was found for it: one typo, one sentence."""
+    meant = {(m.where[:-1], m.message.partition("did you mean ")[2].rstrip("?")) for m in mistakes if m.on_key}
+    return [m for m in mistakes if m.message != MISSING or (m.where[:-1], m.where[-1]) not in meant]
 
 
 def _is_type_tag(part: Any) -> bool:

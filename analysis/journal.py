@@ -1,0 +1,172 @@
+"""Recorded runs: the journals of a study folder, read without changing anything.
+
+`protocols.record` knows the lines; this module knows where the files lie and which runs count.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from analysis.errors import AnalysisError, listed
+
+
+@dataclass(frozen=True)
+class RecordedRun:
+    """One journal. Trials are the last complete record of each, practice left out."""
+
+    path: Path
+    name: str  # of the journal inside the study folder, with forward slashes
+    participant: str
+    number: int
+    header: dict[str, Any]
+    answers: dict[str, Any]
+    trials: tuple[dict[str, Any], ...]  # by trial number
+    ended: str  # reason of the last end; "" when there is none
+    repeated: tuple[int, ...]  # trial numbers recorded more than once
+    torn: bool  # the last line was cut off
+
+    @property
+    def finished(self) -> bool:
+        return self.ended == "finished"
+
+
+@dataclass(frozen=True)
+class RecordedStudy:
+    """The runs of a study folder that are analysed, and what is said about the others."""
+
+    runs: tuple[RecordedRun, ...]
+    data_hash: str  # SHA-256 over the names and bytes of all journals
+    journals: int
+    warnings: tuple[str, ...]
+    left_out: tuple[tuple[str, str], ...] = field(default=())  # participant, reason
+
+
+def read_journal(path: Path, name: str = "") -> RecordedRun:
+    """One journal; raises AnalysisError naming the file and line where an inner line is damaged."""
+    from protocols.record import decode_line
+
+    name = name or path.name
+    lines = path.read_bytes().split(b"\n")
+    if lines and not lines[-1].strip():
+        lines.pop()
+    records, torn = [], False
+    for place, line in enumerate(lines, start=1):
+        try:
+            records.append(decode_line(line.decode("utf-8")))
+        except ValueError as error:
+            if place == len(lines):
+                torn = True
+                break
+            raise AnalysisError(
+                f"{name}, line {place} of {len(lines)}: {error}. Restore the file from a copy."
+            ) from None
+    if not records or records[0].get("kind") != "header":
+        raise AnalysisError(f"{name}: the file does not begin with a complete header line, so it is not a usable run.")
+    header = records[0]
+    if header.get("format") != 1:
+        raise AnalysisError(
+            f"{name}: written in format {header.get('format')!r}; this version reads format 1. Update it."
+        )
+    answers, trials, repeated, ended = {}, {}, [], ""
+    for place, record in enumerate(records, start=1):
+        kind = record.get("kind")
+        try:
+            if kind == "answer":
+                answers[str(record["question"])] = record["value"]
+            elif kind == "trial" and not record.get("practice", False):
+                number = int(record["number"])
+                if number in trials:
+                    repeated.append(number)
+                trials[number] = record
+            elif kind == "end":
+                ended = str(record["reason"])
+        except (KeyError, TypeError, ValueError) as error:
+            raise AnalysisError(f"{name}, line {place}: a {kind} record without a usable {error}.") from None
+    return RecordedRun(
+        path, name, str(header.get("participant", "")), int(header.get("run", 1)), header, answers,
+        tuple(trials[n] for n in sorted(trials)), ended, tuple(dict.fromkeys(repeated)), torn,
+    )  # fmt: skip
+
+
+def read_study(folder: Path, unfinished: bool = False) -> RecordedStudy:
+    """Every run under `folder`/sourcedata, with those that do not count left out and named.
+
+    unfinished: also take runs that were begun but not finished.
+    """
+    if not folder.is_dir():
+        raise AnalysisError(f"There is no folder {folder}; name the study's folder inside the data folder.")
+    paths = sorted(folder.glob("sourcedata/sub-*/run-*/journal.jsonl"), key=_natural)
+    if not paths:
+        raise AnalysisError(
+            f"{folder} holds no recorded run (sourcedata/sub-ID/run-N/journal.jsonl); record or simulate one first."
+        )
+    digest, warnings, left_out, runs = hashlib.sha256(), [], [], []
+    for path in paths:
+        name = path.relative_to(folder).as_posix()
+        digest.update(f"{name}\n{path.stat().st_size}\n".encode())
+        digest.update(path.read_bytes())
+        run = read_journal(path, name)
+        if run.torn:
+            warnings.append(f"{name}: the last line was cut off while being written and was skipped.")
+        if run.repeated:
+            warnings.append(
+                f"{run.participant}: trial(s) {listed(run.repeated)} were recorded more than once; "
+                f"the last record counts."
+            )
+        if run.ended == "declined":
+            left_out.append((run.participant, "did not consent"))
+        elif run.ended == "withdrawn":
+            left_out.append((run.participant, "withdrew"))
+        elif not run.finished and not unfinished:
+            how = f"ended: {run.ended}" if run.ended else "no end recorded"
+            left_out.append((run.participant, f"unfinished run ({len(run.trials)} trials; {how})"))
+        else:
+            runs.append(run)
+    runs, again = _first_of_each(runs)
+    left_out += again
+    warnings += _disagreements(runs)
+    return RecordedStudy(tuple(runs), digest.hexdigest(), len(paths), tuple(warnings), tuple(left_out))
+
+
+def _natural(path: Path) -> list[tuple[int, str]]:
+    """Sorts run-10 after run-2; the parts of the path that matter are the last three."""
+    text = "/".join(path.parts[-3:])
+    return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", text)]
+
+
+def _first_of_each(runs: list[RecordedRun]) -> tuple[list[RecordedRun], list[tuple[str, str]]]:
+    kept: dict[str, RecordedRun] = {}
+    extra = []
+    for run in runs:
+        if run.participant in kept:
+            extra.append(
+                (
+                    run.participant,
+                    f"run {run.number} (a later run; run {kept[run.participant].number} counts)",
+                )
+            )
+        else:
+            kept[run.participant] = run
+    return list(kept.values()), extra
+
+
+def _disagreements(runs: list[RecordedRun]) -> list[str]:
+    found = []
+    hashes = dict.fromkeys(run.header.get("study_hash") for run in runs)
+    if len(hashes) > 1:
+        odd = [run.participant for run in runs if run.header.get("study_hash") != next(iter(hashes))]
+        found.append(
+            f"The runs were recorded with {len(hashes)} versions of the study file; the plan stored with "
+            f"{runs[0].participant}'s run is followed. {listed(odd)} had another version."
+        )
+    simulated = [run.participant for run in runs if run.header.get("simulated")]
+    if simulated and len(simulated) < len(runs):
+        found.append(
+            f"Simulated and real participants are mixed: {listed(simulated)} "
+            f"{'is' if len(simulated) == 1 else 'are'} simulated. Keep them in separate data folders."
+        )
+    return found

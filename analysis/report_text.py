@@ -1,0 +1,120 @@
+"""The paragraphs of the report: who took part, what was done, and what the checks say."""
+
+from __future__ import annotations
+
+import math
+
+from analysis.apa import p_value, share
+from analysis.errors import listed
+from analysis.results import ALPHA, PlannedResults
+
+
+def simulated_sentence(results: PlannedResults) -> str:
+    """Says that nobody was there; empty when everybody was."""
+    count, total = results.simulated, len(results.recorded.runs)
+    if not count:
+        return ""
+    if count == total:
+        return (
+            f"Simulated participants: all {total} runs come from simulated observers, not from people. "
+            "The numbers show that the study and its analysis work; they say nothing about perception."
+        )
+    return f"{count} of the {total} participants are simulated observers, not people. Do not report these results."
+
+
+def participants_paragraph(results: PlannedResults) -> str:
+    plan, runs = results.plan, results.recorded.runs
+    n = len(runs)
+    words = f"{n} participant{'s' if n != 1 else ''} finished the study"
+    if plan.planned:
+        words += f" ({plan.planned} were planned)"
+    words += "."
+    for name in plan.between:
+        counts = [(level, sum(str(run.answers.get(name)) == level for run in runs)) for level in plan.levels[name]]
+        words += f" {name.capitalize()}: {listed(f'{count} {level}' for level, count in counts)}."
+    ages = [float(run.answers["age"]) for run in runs if _is_number(run.answers.get("age"))]
+    if len(ages) > 1:
+        mean = sum(ages) / len(ages)
+        sd = math.sqrt(sum((age - mean) ** 2 for age in ages) / (len(ages) - 1))
+        words += f" Mean age {mean:.1f} years (SD {sd:.1f}, range {min(ages):.0f}–{max(ages):.0f})."
+    if results.means is not None and len(results.means.subjects) < n:
+        words += f" The analysis of variance rests on {len(results.means.subjects)} of them."
+    return words
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def methods_paragraph(results: PlannedResults) -> str:
+    """As it could stand in a Methods section."""
+    plan = results.plan
+    if not (plan.within or plan.between):
+        return "The study file plans no analysis of variance."
+    n = "" if results.means is None else f" (n = {len(results.means.subjects)})"
+    design = []
+    for kind, names in (("within-participant", plan.within), ("between-participant", plan.between)):
+        if names:
+            sizes = [f"{name} ({', '.join(plan.levels[name])})" for name in names]
+            design.append(f"the {kind} factor{'s' if len(names) > 1 else ''} {listed(sizes)}")
+    words = [
+        f"{plan.label} was averaged over the trials of each participant and cell and submitted to a "
+        f"{len(plan.within) + len(plan.between)}-way {'mixed ' if plan.within and plan.between else ''}"
+        f"analysis of variance{n} with {' and '.join(design)}.",
+        "Sums of squares are type III.",
+    ]
+    if any(len(plan.levels[name]) > 2 for name in plan.within):
+        words.append(
+            "Greenhouse–Geisser corrected degrees of freedom and p values are reported for every "
+            "effect whose "
+            "within-participant part has more than one degree of freedom, whatever Mauchly's test says."
+        )
+    words.append("Effect sizes are partial eta squared (ηp²) with 90 % limits from the noncentral F distribution.")
+    if plan.adjust is not None:
+        correction = {"tukey": "Tukey-adjusted", "bonferroni": "Bonferroni-adjusted", "holm": "Holm-adjusted"}
+        words.append(
+            f"Effects with p < {share(ALPHA)} were followed by "
+            f"{correction.get(plan.adjust, 'unadjusted')} pairwise "
+            f"comparisons of estimated marginal means ({plan.model} model, groups weighted equally), "
+            f"one family "
+            "per effect."
+        )
+    for test in plan.t_tests:
+        words.append(
+            f"For each {test.each}, participants' mean {plan.label.lower()} was compared with the "
+            f"{test.label} in a "
+            "two-sided one-sample t test; these p values are not corrected for their number."
+        )
+    if plan.normality:
+        words.append("Normality was assessed with Shapiro–Wilk tests of the residuals and of every cell.")
+    return " ".join(words)
+
+
+def sphericity_sentence(results: PlannedResults) -> str:
+    tested = results.anova[results.anova["mauchly_p"].notna()] if len(results.anova) else results.anova
+    if not len(tested):
+        return ""
+    low = tested[tested["mauchly_p"] < ALPHA]
+    if not len(low):
+        return f"Sphericity: Mauchly's test rejects for none of the {len(tested)} testable effects."
+    found = [f"{row.effect.replace(':', ' × ')} ({p_value(row.mauchly_p)})" for row in low.itertuples()]
+    return (
+        f"Sphericity: Mauchly's test rejects for {listed(found, 20)}. The correction is applied to "
+        f"every effect "
+        "it can concern, not only to these."
+    )
+
+
+def normality_sentence(results: PlannedResults) -> str:
+    table = results.normality
+    if not len(table) or not math.isfinite(table["p"].iloc[0]):
+        return ""
+    first, cells = table.iloc[0], table.iloc[1:]
+    tested, low = int(cells["p"].notna().sum()), int((cells["p"] < ALPHA).sum())
+    verdict = "deviate from a normal distribution" if first["p"] < ALPHA else "show no deviation from normality"
+    return (
+        f"Normality: the residuals {verdict} (Shapiro–Wilk W = {first['w']:.3f}, {p_value(first['p'])}, n = "
+        f"{int(first['n'])}). Of {tested} cells tested one by one, {low} "
+        f"{'has' if low == 1 else 'have'} p < .05; "
+        f"about {max(1, round(tested * ALPHA))} would by chance alone."
+    )

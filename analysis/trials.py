@@ -1,0 +1,63 @@
+"""The tidy table of trials: one row per trial of every run that counts."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pandas as pd
+
+from analysis.errors import AnalysisError, listed
+from analysis.journal import RecordedRun, RecordedStudy
+from analysis.plan import AnalysisPlan, matching
+
+COUNTS = ("response_time", "key_presses", "reversals", "late_frames")
+
+
+def trials_table(recorded: RecordedStudy, plan: AnalysisPlan) -> pd.DataFrame:
+    """One row per trial with columns study, participant, run, the answers that are not free text, trial,
+    block, repetition, the factors, the response's values, response_time (s), key_presses, reversals,
+    late_frames, measured_* (from the walker as drawn) and excluded (the reason, or empty).
+    """
+    rows = [_row(run, trial, plan) for run in recorded.runs for trial in run.trials]
+    if not rows:
+        raise AnalysisError("The recorded runs hold no trial (practice does not count).")
+    table = pd.DataFrame(rows, columns=_columns(rows, plan, recorded))
+    if plan.measure not in table.columns:
+        raise AnalysisError(
+            f"The planned measure {plan.measure!r} is no column of the trials; they have {listed(table.columns, 40)}."
+        )
+    table["excluded"] = ""
+    for exclusion in plan.exclusions:
+        chosen = matching(table, exclusion.where) & (table["excluded"] == "")
+        table.loc[chosen, "excluded"] = exclusion.reason
+    return table
+
+
+def _row(run: RecordedRun, trial: dict[str, Any], plan: AnalysisPlan) -> dict[str, Any]:
+    row: dict[str, Any] = {"study": plan.study, "participant": run.participant, "run": run.number}
+    row |= {name: value for name, value in run.answers.items() if name not in plan.free_text}
+    row |= {"trial": trial["number"], "block": trial.get("block"), "repetition": trial.get("repetition")}
+    row |= {**trial.get("factors", {}), **trial.get("response", {})}
+    row |= {name: trial.get(name) for name in COUNTS}
+    return row | {f"measured_{name}": value for name, value in trial.get("measured", {}).items()}
+
+
+def _columns(rows: list[dict[str, Any]], plan: AnalysisPlan, recorded: RecordedStudy) -> list[str]:
+    """The same order whatever the first run happens to hold."""
+    answered = list(dict.fromkeys(name for run in recorded.runs for name in run.answers))
+    answers = [name for name in (*plan.questions, *answered) if name in answered and name not in plan.free_text]
+    seen = dict.fromkeys(name for row in rows for name in row)
+    first = ["study", "participant", "run", *answers, "trial", "block", "repetition", *plan.factors]
+    ordered = list(dict.fromkeys(name for name in first if name in seen))
+    response = [n for n in seen if n not in ordered and n not in COUNTS and not n.startswith("measured_")]
+    measured = [n for n in seen if n.startswith("measured_") and n not in ordered]
+    return [*ordered, *response, *COUNTS, *measured]
+
+
+def exclusion_counts(trials: pd.DataFrame, plan: AnalysisPlan) -> pd.DataFrame:
+    """How many trials of how many participants each declared exclusion took out."""
+    rows = []
+    for exclusion in plan.exclusions:
+        out = trials[trials["excluded"] == exclusion.reason]
+        rows.append((exclusion.where, exclusion.reason, len(out), out["participant"].nunique()))
+    return pd.DataFrame(rows, columns=["where", "reason", "trials", "participants"])

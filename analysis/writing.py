@@ -1,0 +1,30 @@
+"""Results on disk: written beside the target, then renamed, so that nobody reads half a file."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from pathlib import Path
+
+import pandas as pd
+
+from analysis.errors import AnalysisError
+
+
+def write_bytes(path: Path, content: bytes) -> Path:
+    """Write `content` to `path`, whole or not at all."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        temporary.write_bytes(content)
+        os.replace(temporary, path)
+    except OSError as error:
+        with suppress(OSError):
+            temporary.unlink()
+        raise AnalysisError(f"{path} cannot be written: {error.strerror or error}.") from None
+    return path
+
+
+def write_table(path: Path, table: pd.DataFrame) -> Path:
+    """A CSV table (RFC 4180: CRLF, quoted where needed, UTF-8); numbers at full precision, nan empty."""
+    return write_bytes(path, table.to_csv(index=False, lineterminator="\r\n").encode("utf-8"))

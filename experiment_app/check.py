@@ -1,0 +1,179 @@
+"""`gaitlab check`: everything that can be wrong with a study before a participant sits down, and what it will be."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from protocols.consistency import inconsistencies
+from protocols.design import conditions, make_trials
+from protocols.study import Study
+from protocols.study_file import Mistake, Place, StudyFile, read_study
+
+READING_SPEED = 200.0
+"""Words read per minute on a screen, a cautious figure for the expected duration."""
+
+ADJUSTING = 9.0
+"""s a participant typically takes per adjustment (Niay 2022: 96 trials in about a quarter of an hour)."""
+
+
+def checked_study(study: str) -> StudyFile:
+    """The study of a file or shipped name; raises StudyFileError with every mistake at once, also in names."""
+    file = read_study(study)
+    refuse_mistakes(file, [*inconsistencies(file.study), *check_names(file)])
+    return file
+
+
+def refuse_mistakes(file: StudyFile, mistakes: Sequence[Mistake]) -> None:
+    """Raises StudyFileError when there are mistakes."""
+    if mistakes:
+        raise file.error(mistakes)
+
+
+def check_names(file: StudyFile) -> list[Mistake]:
+    """Actors and bodies that do not exist, and speeds and step frequencies that an actor's captures do not cover."""
+    from stimuli.actors import actor_names
+    from stimuli.bodies import body_names
+
+    study = file.study
+    mistakes = [*_names(study, study.stimulus.actor, ("stimulus", "actor"), "actor", actor_names())]
+    if study.stimulus.body:
+        mistakes += _names(study, study.stimulus.body, ("stimulus", "body"), "body", body_names())
+    return mistakes or list(_coverage(study))
+
+
+def _names(study: Study, value: str, place: Place, what: str, known: Sequence[str]) -> Iterator[Mistake]:
+    """Mistakes in a name that the stimulus gives, directly or by a factor's levels and training trials."""
+    from difflib import get_close_matches
+
+    named: list[tuple[object, Place]] = [(value, place)]
+    if value.startswith("$"):
+        factor = value[1:]
+        named = [(level, ("factors", factor, i)) for i, level in enumerate(study.factors.get(factor, []))]
+        named += [
+            (trial.levels[factor], ("practice", i, factor))
+            for i, trial in enumerate(study.practice)
+            if factor in trial.levels
+        ]
+    for name, where in named:
+        if name not in known:
+            near = get_close_matches(str(name), known, n=1, cutoff=0.5)
+            way = f"did you mean {near[0]}?" if near else f"there are: {', '.join(known)}"
+            yield Mistake(where, f"there is no {what} {name}; {way}")
+
+
+def _coverage(study: Study) -> Iterator[Mistake]:
+    """Speeds outside what every actor of the study can walk at, over the task's whole range."""
+    from stimuli.actors import load_actor
+    from stimuli.walker import drawn_pose
+
+    speed, actor = study.stimulus.speed, study.stimulus.actor
+    factor = speed[1:] if isinstance(speed, str) else None
+    speeds = list(enumerate(study.factors[factor])) if factor else [(0, speed)]
+    actors = study.factors[actor[1:]] if actor.startswith("$") else [actor]
+    reach = study.task.range
+    for i, value in speeds:
+        for name in actors:
+            try:
+                for frequency in (reach.minimum, reach.maximum):
+                    drawn_pose(load_actor(str(name)), float(value), frequency, 0.0)
+            except ValueError as error:
+                yield Mistake(("factors", factor, i) if factor else ("stimulus", "speed"), str(error))
+                break
+
+
+def expected_minutes(study: Study) -> float:
+    """How long a session takes, in minutes: reading every page, answering, adjusting, intervals and breaks."""
+    pages = study.pages
+    shown = [pages.consent, *pages.instructions, pages.before_practice, pages.before_trials, pages.debrief]
+    words = sum(len(page.text.split()) for page in shown if page is not None)
+    trials = len(conditions(study)) * study.repetitions + len(study.practice)
+    breaks = (trials // study.breaks.every) * 60.0 if study.breaks else 0.0
+    adjusting = trials * (max(ADJUSTING, study.task.minimum_looking_time) + study.interval)
+    return words / READING_SPEED + (len(study.participants.questions) * 8.0 + adjusting + breaks) / 60.0
+
+
+def summary(file: StudyFile) -> list[str]:
+    """What `gaitlab check` prints about a study without mistakes, with a picture of the design's balance in text."""
+    study = file.study
+    cells, trials = len(conditions(study)), len(conditions(study)) * study.repetitions
+    levels = " x ".join(str(len(v)) for v in study.factors.values())
+    lines = [
+        f"{file.name}: {study.title}",
+        f"  no mistakes; SHA-256 {file.hash[:16]}",
+        f"  {levels} levels = {cells} conditions, {study.repetitions} times each = {trials} trials, "
+        f"after {len(study.practice)} training trials",
+        f"  about {math.ceil(expected_minutes(study))} minutes; {study.participants.planned} participants planned",
+        "",
+        "Balance (one dot = one trial of participant 1, left to right in the order shown)",
+    ]
+    return lines + _strip(study)
+
+
+def _strip(study: Study) -> list[str]:
+    """For every level of every factor: in which of 48 equal parts of the session its trials fall."""
+    trials = make_trials(study, seed=1)
+    bins = min(48, len(trials))
+    lines = []
+    for factor, levels in study.factors.items():
+        for level in levels:
+            at = Counter((t.number - 1) * bins // len(trials) for t in trials if t.levels[factor] == level)
+            marks = "".join(" .:*#"[min(at[b], 4)] for b in range(bins))
+            lines.append(f"  {factor:>10} {level!s:<8}|{marks}| {sum(at.values())} trials")
+    return lines
+
+
+def design_picture(file: StudyFile, path: Path) -> None:
+    """A PNG of the design's balance: the level shown in each trial of the first participants, and the counts."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    import matplotlib.pyplot as plt
+    import numpy as np
+
+    from protocols.design import default_seed
+
+    study = file.study
+    people = min(study.participants.planned, 12)
+    orders = [make_trials(study, default_seed(study.study, f"P{i + 1:02d}", 1)) for i in range(people)]
+    figure, axes = plt.subplots(
+        len(study.factors),
+        2,
+        figsize=(13, 2.2 + 1.6 * len(study.factors)),
+        width_ratios=(5, 1),
+        squeeze=False,
+    )
+    for (factor, levels), (left, right) in zip(study.factors.items(), axes, strict=True):
+        grid = np.array([[levels.index(t.levels[factor]) for t in order] for order in orders])
+        colours = plt.get_cmap("viridis", len(levels))
+        left.imshow(grid, aspect="auto", cmap=colours, vmin=-0.5, vmax=len(levels) - 0.5, interpolation="nearest")
+        left.set_ylabel("participant")
+        left.set_yticks(range(people), [str(i + 1) for i in range(people)], fontsize=7)
+        left.set_title(factor, loc="left", fontweight="bold")
+        first, second = grid[:, : grid.shape[1] // 2], grid[:, grid.shape[1] // 2 :]
+        for i, level in enumerate(levels):
+            counts = (first == i).sum(), (second == i).sum()
+            right.barh(i, counts[0], color=colours(i), alpha=0.65)
+            right.barh(i, counts[1], left=counts[0], color=colours(i))
+            right.text(sum(counts), i, f" {level}", va="center", fontsize=9)
+        right.set_yticks([])
+        right.invert_yaxis()
+        right.spines[["top", "right"]].set_visible(False)
+        right.set_title("trials: first | second half", fontsize=9, loc="left")
+        right.margins(x=0.25)
+    axes[-1, 0].set_xlabel("trial")
+    figure.suptitle(f"{study.title}: the order of the first {people} participants", x=0.01, ha="left")
+    figure.tight_layout()
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def schema_text() -> str:
+    """The JSON Schema of study files."""
+    schema = Study.model_json_schema(by_alias=True)
+    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
+    schema["title"] = "gaitlab study"
+    return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"

@@ -1,0 +1,236 @@
+"""The `gaitlab` command: reads arguments, prints sentences, chooses the exit status; heavy imports stay inside.
+
+Exit status: 0 fine, 1 something failed, 2 wrong usage or study file.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import App, Parameter
+from rich.console import Console
+
+from experiment_app.errors import RunError, UsageError
+
+app = App(
+    name="gaitlab",
+    help="Perceptual experiments on walking virtual humans: from a study file to a report.",
+    version_flags=["--version"],
+)
+out = Console(highlight=False, soft_wrap=True)
+problems = Console(stderr=True, highlight=False, soft_wrap=True)
+
+Data = Annotated[Path, Parameter(help="Folder of all data; each study has its own folder in it.")]
+StudyArgument = Annotated[str, Parameter(help="A study file (YAML), or the name of a shipped study: walk_ratio.")]
+
+
+def main() -> None:
+    """Runs the command of sys.argv and exits."""
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: list[str]) -> int:
+    """Runs one command and returns its exit status; every foreseeable problem is one sentence, never a traceback."""
+    from protocols.study_file import StudyFileError
+
+    try:
+        result = app(arguments, exit_on_error=False, print_error=True, result_action="return_value")
+        return result if isinstance(result, int) else 0
+    except StudyFileError as error:
+        problems.print(str(error), style="red", markup=False)
+        return 2
+    except (UsageError, FileNotFoundError) as error:
+        problems.print(f"gaitlab: {error}", style="red", markup=False)
+        return 2
+    except KeyboardInterrupt:
+        problems.print("gaitlab: interrupted; everything recorded so far is kept.", markup=False)
+        return 1
+    except (RunError, OSError) as error:
+        problems.print(f"gaitlab: {error}", style="red", markup=False)
+        return 1
+    except Exception as error:
+        status = _status_of_named_error(error)
+        if status is None:
+            raise
+        return status
+
+
+def _status_of_named_error(error: Exception) -> int | None:
+    """The exit status for an error of another room that is a sentence already; None for one that is a bug."""
+    kinds = {base.__name__ for base in type(error).__mro__}
+    if "CycloptsError" in kinds:
+        return 2
+    if kinds & {"ActorError", "BodyError", "CoverageError", "AnalysisError", "MotionFileError"}:
+        problems.print(f"gaitlab: {error}", style="red", markup=False)
+        return 1 if "AnalysisError" in kinds else 2
+    return None
+
+
+@app.command(name="run")
+def run_study(
+    study: StudyArgument,
+    *,
+    participant: Annotated[str, Parameter(help="The participant's ID: letters and digits, as P01.")],
+    data: Data = Path("data"),
+    window: Annotated[bool, Parameter(negative="", help="In a window instead of full screen.")] = False,
+    display: Annotated[int, Parameter(help="Number of the display for full screen, from 1.")] = 1,
+    refresh: Annotated[
+        float, Parameter(help="Refresh rate in Hz, where the display reports none or a wrong one.")
+    ] = 0.0,
+    seed: Annotated[
+        int | None, Parameter(help="Seed of the trial order; by default made from study, ID and run.")
+    ] = None,
+    new_run: Annotated[bool, Parameter(negative="", help="Record another run of a participant who has one.")] = False,
+    resume: Annotated[
+        Literal["ask", "yes", "no"], Parameter(help="What to do with an unfinished run of this participant.")
+    ] = "ask",
+) -> int:
+    """Run a study with a participant at the screen.
+
+    An unfinished run is offered to be continued at the first unfinished trial, with the same order.
+    """
+    from experiment_app.live import run_live
+
+    return run_live(
+        study, participant, data, full_screen=not window, display=display, refresh=refresh, seed=seed,
+        new_run=new_run, resume=resume, ask=_ask, say=_say,
+    )  # fmt: skip
+
+
+@app.command
+def check(
+    study: StudyArgument,
+    *,
+    picture: Annotated[Path | None, Parameter(help="Also write the balance of the design as a picture (PNG).")] = None,
+) -> int:
+    """Check a study file: every mistake with its line, the number of trials, how long it takes, the balance."""
+    from experiment_app.check import checked_study, design_picture, summary
+
+    file = checked_study(study)
+    for line in summary(file):
+        out.print(line, markup=False)
+    if picture is not None:
+        design_picture(file, picture)
+        out.print(f"Picture of the balance: {picture}", markup=False)
+    return 0
+
+
+@app.command
+def simulate(
+    study: StudyArgument,
+    *,
+    participants: Annotated[int | None, Parameter(help="How many; by default as many as the study plans.")] = None,
+    data: Annotated[Path, Parameter(help="Folder of all data; not the one of real participants.")] = Path("simulated"),
+    seed: Annotated[int, Parameter(help="The same seed gives the same participants and responses.")] = 0,
+) -> int:
+    """Run a study with simulated participants, without a window and without waiting."""
+    from experiment_app.check import checked_study
+    from experiment_app.simulate import simulate as simulated_runs
+
+    file = checked_study(study)
+    count = file.study.participants.planned if participants is None else participants
+    if count < 1:
+        raise UsageError(f"--participants {count}: at least 1 is needed.")
+    for _ in _with_progress(simulated_runs(file, count, data, seed), count, "Simulating participants"):
+        pass
+    out.print(f"{count} simulated participants in {data / file.study.study}", markup=False)
+    out.print(f"Analyse them with: gaitlab analyse {data / file.study.study} --out report", markup=False)
+    return 0
+
+
+@app.command
+def analyse(
+    folder: Annotated[Path, Parameter(help="The study's folder of data, as data/walk_ratio.")],
+    *,
+    out_folder: Annotated[Path, Parameter(name="--out", help="Folder for tables, figures and report.")] = Path(
+        "report"
+    ),
+) -> int:
+    """Follow the study file's planned analysis: tables, figures and one self-contained report."""
+    from analysis.planned import analyse as planned_analysis
+
+    with out.status("Analysing"):
+        outcome = planned_analysis(folder, out_folder)
+    for warning in outcome.warnings:
+        problems.print(f"Note: {warning}", style="yellow", markup=False)
+    for sentence in outcome.headlines:
+        out.print(sentence, markup=False)
+    for path in outcome.paths:
+        out.print(f"  {path}", markup=False)
+    return 0
+
+
+@app.command
+def demo(
+    *,
+    folder: Annotated[Path, Parameter(help="Where the demo writes its data, pictures and report.")] = Path(
+        "gaitlab-demo"
+    ),
+    off_screen: Annotated[
+        bool, Parameter(negative="", help="Do not open a window even where there is a screen.")
+    ] = False,
+) -> int:
+    """See it work in a minute: a short session, twenty-one simulated participants, the analysis.
+
+    With a screen you take part yourself; without one a simulated participant does, off-screen.
+    """
+    from experiment_app.demo import run_demo
+
+    return run_demo(folder, off_screen=off_screen, say=_say, progress=_with_progress)
+
+
+@app.command
+def schema(
+    *, path: Annotated[Path, Parameter(name="--out", help="Where to write it.")] = Path("study.schema.json")
+) -> int:
+    """Write the JSON Schema of study files, with which editors complete and check them."""
+    from experiment_app.check import schema_text
+
+    path.write_text(schema_text(), encoding="utf-8")
+    out.print(f"Schema written to {path}; name it in a study file's first line:", markup=False)
+    out.print(f"# yaml-language-server: $schema={path.name}", markup=False)
+    return 0
+
+
+@app.command
+def copy(
+    study: Annotated[str, Parameter(help="Name of a shipped study.")],
+    path: Annotated[Path, Parameter(help="The new file; never overwritten.")],
+) -> int:
+    """Copy a shipped study file, to change it into your own, and the schema beside it."""
+    from experiment_app.check import schema_text
+    from protocols.study_file import find_study
+
+    _, text = find_study(study)
+    try:
+        with open(path, "xb") as file:
+            file.write(text)
+    except FileExistsError:
+        raise UsageError(f"{path} exists already; choose another name.") from None
+    beside = path.parent / "study.schema.json"
+    if not beside.exists():
+        beside.write_text(schema_text(), encoding="utf-8")
+    out.print(f"Copied to {path}. Edit it, then: gaitlab check {path}", markup=False)
+    return 0
+
+
+def _say(sentence: str) -> None:
+    out.print(sentence, markup=False)
+
+
+def _ask(question: str) -> bool:
+    """Asks on the terminal; raises UsageError where nobody can answer."""
+    if not sys.stdin.isatty():
+        raise UsageError(f"{question} Nobody can answer here: say --resume yes or --resume no.")
+    return input(f"{question} [Y/n] ").strip().lower() in ("", "y", "yes")
+
+
+def _with_progress(items, count: int, what: str):  # type: ignore[no-untyped-def]
+    """The items, with a progress bar and the time left while they are being made."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=problems, transient=True) as bar:
+        yield from bar.track(items, total=count, description=what)

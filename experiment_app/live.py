@@ -1,0 +1,122 @@
+"""A run with a person at the screen: new or continued run, window, signals, a clear word at the end."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Literal
+
+from experiment_app.check import check_names, checked_study, refuse_mistakes
+from experiment_app.errors import RunError
+from experiment_app.loop import run_session
+from experiment_app.opening import OpenRun, open_new, open_unfinished, unfinished_run
+from experiment_app.run_folder import Run, check_participant
+from experiment_app.simulate import refuse_mixed
+from experiment_app.walkers import cast
+from experiment_app.windows.desktop import DesktopWindow
+from protocols.design import Trial
+from protocols.plan import Plan, TrialStep, value_of
+from protocols.session import begin
+from protocols.study_file import StudyFile, parse_study
+
+SIGNALS = ("SIGTERM", "SIGINT", "SIGHUP", "SIGBREAK")
+
+
+def run_live(
+    study: str,
+    participant: str,
+    data: Path,
+    *,
+    full_screen: bool,
+    display: int,
+    refresh: float,
+    seed: int | None,
+    new_run: bool,
+    resume: Literal["ask", "yes", "no"],
+    ask: Callable[[str], bool],
+    say: Callable[[str], None],
+) -> int:
+    """Runs the study with a participant and returns the exit status; see the command's help for the arguments."""
+    check_participant(participant)
+    file = checked_study(study)
+    refuse_mixed(data, file.study.study, simulated=False)
+    old = None if new_run else unfinished_run(data, file.study.study, participant)
+    if old is not None and not _continues(old, file, resume, ask, say):
+        return 2
+    with DesktopWindow(title=file.study.title, full_screen=full_screen, display=display, refresh=refresh) as window:
+        if old is not None:
+            opened = open_unfinished(old, display=window.description())
+        else:
+            opened = open_new(
+                file,
+                participant,
+                data,
+                display=window.description(),
+                simulated=False,
+                seed=seed,
+                again=new_run,
+            )
+        with opened.journal as journal, ending_signals(window.request_end):
+            prepare(opened.plan)
+            session = run_session(begin(opened.plan), window, journal)
+    return _farewell(opened, session.ended, say)
+
+
+def _continues(old: Run, file: StudyFile, resume: str, ask: Callable[[str], bool], say: Callable[[str], None]) -> bool:
+    """Whether the unfinished run is to be continued; says how to go on when it is not."""
+    done = len({line["number"] for line in old.lines if line["kind"] == "trial" and not line["practice"]})
+    question = f"Participant {old.participant} has an unfinished run with {done} trials done. Continue it?"
+    if resume == "no" or (resume == "ask" and not ask(question)):
+        say(f"Nothing was changed. Use --new-run to record a new run for {old.participant}.")
+        return False
+    if old.header["study_hash"] != file.hash:
+        kept = parse_study(f"{old.journal} (the study file it holds)", old.header["study_text"])
+        refuse_mistakes(kept, check_names(kept))
+        say("The study file has changed since; the run goes on with the study it was begun with.")
+    return True
+
+
+def prepare(plan: Plan) -> None:
+    """Makes every walker the plan will show, so that nothing is loaded between trials."""
+    stimulus = plan.study.stimulus
+    for step in plan.steps:
+        if isinstance(step, TrialStep):
+            cast(str(value_of(stimulus.actor, step.trial)), _body(plan, step.trial))
+
+
+def _body(plan: Plan, trial: Trial) -> str:
+    return str(value_of(plan.study.stimulus.body, trial)) if plan.study.stimulus.body else ""
+
+
+@contextmanager
+def ending_signals(request_end: Callable[[str], None]) -> Iterator[None]:
+    """Turns SIGTERM, SIGINT and SIGHUP into a request to end, so that the end is recorded like any other."""
+
+    def end(number: int, _: object) -> None:
+        request_end(signal.Signals(number).name)
+
+    known = [getattr(signal, name) for name in SIGNALS if hasattr(signal, name)]
+    before = {number: signal.signal(number, end) for number in known}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _farewell(opened: OpenRun, ended: str, say: Callable[[str], None]) -> int:
+    run = opened.run
+    if ended == "finished":
+        say(f"Participant {run.participant} has finished: {run.journal}")
+        return 0
+    if ended == "declined":
+        say(f"Participant {run.participant} declined; only the refusal is stored.")
+        return 0
+    again = f"gaitlab run ... --participant {run.participant}"
+    message = f"the run ended early ({ended}); everything recorded is in {run.journal}. To go on: {again}"
+    if ended == "stopped":
+        say(message[0].upper() + message[1:])
+        return 1
+    raise RunError(message)

@@ -1,0 +1,117 @@
+"""Cycles whose feet are written on their own clock, and weighted means of them at one shared phase.
+
+All cycles are sampled at one phase, so feet cannot drift apart; rotations are blended joint by joint (normalised
+linear blending after turning quaternions to one hemisphere), everything else linearly. Knows no speed, no actor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from stimuli.skeleton import JOINTS, Floats
+
+UPPER: tuple[str, ...] = tuple(name for name in JOINTS if not name.endswith(("Leg", "Foot", "Toes")))
+"""Joints whose rotation a cycle stores; legs follow from hips and feet."""
+
+FOOT_CHANNELS: tuple[str, ...] = ("pitch", "clearance", "travel", "side", "yaw", "knee_yaw")
+"""Wanted pitch (rad, toes up; see contact.flattened), height of the lowest point (m), travel beyond
+contact.footprint_travel (strides), sideways place (m), yaw of the foot and of the knee (rad, to the left)."""
+
+SIDES: tuple[str, ...] = ("left", "right")
+
+
+@dataclass(frozen=True, eq=False)
+class WalkCycle:
+    """One gait cycle on one skeleton, N samples, without travel; phase 0 is the right heel strike.
+
+    hips:      (N, 3) m, walker's frame
+    rotations: (N, 13, 4) local rotations of the UPPER joints
+    feet:      (2, N, 6) FOOT_CHANNELS of the left and the right foot, each on its own clock from its heel strike
+    stance:    (2,) share of the cycle that each foot is on the ground
+    ahead:     (2,) m, footprint ahead of the walker's mean position at its heel strike
+    """
+
+    speed: float  # m/s
+    step_frequency: float  # steps/min
+    hips: Floats
+    rotations: Floats
+    feet: Floats
+    stance: Floats
+    ahead: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class CycleTable:
+    """K cycles of one actor laid out for blending: one row per (cycle, phase), last sample repeating the first.
+
+    body:     (K, N + 1, 3 + 13 * 4) hips and rotations, quaternions of a joint all in one hemisphere
+    feet:     (2, K, N + 1, 6)
+    contacts: (K, 4) stance of left and right, ahead of left and right
+    """
+
+    body: Floats
+    feet: Floats
+    contacts: Floats
+
+    @classmethod
+    def of(cls, cycles: Sequence[WalkCycle]) -> CycleTable:
+        """Table of cycles with equal numbers of samples."""
+        rotations = np.array([cycle.rotations for cycle in cycles])
+        reference = rotations[0, 0]
+        rotations = np.where(np.sum(rotations * reference, axis=-1, keepdims=True) < 0, -rotations, rotations)
+        body = np.concatenate(
+            [np.array([cycle.hips for cycle in cycles]), rotations.reshape(*rotations.shape[:2], -1)], axis=2
+        )
+        feet = np.array([cycle.feet for cycle in cycles]).transpose(1, 0, 2, 3)
+        return cls(
+            np.concatenate([body, body[:, :1]], axis=1),
+            np.concatenate([feet, feet[:, :, :1]], axis=2),
+            np.array([[*cycle.stance, *cycle.ahead] for cycle in cycles]),
+        )
+
+    @property
+    def samples(self) -> int:
+        """Samples per cycle N."""
+        return int(self.body.shape[1]) - 1
+
+
+def blend_rotations(rotations: Floats, weights: Floats) -> Floats:
+    """Weighted mean of unit quaternions, joint by joint.
+
+    rotations: (N, J, 4) xyzw, one pose per blended cycle
+    weights:   (N,) not negative, summing to 1
+    returns:   (J, 4) xyzw, unit length
+
+    Normalised linear blending: q and -q are the same rotation, so each is first turned to the hemisphere of the
+    heaviest pose.
+    """
+    heaviest = rotations[np.argmax(weights)]
+    same_side = np.sum(rotations * heaviest, axis=-1, keepdims=True)
+    mean = np.einsum("n,njk->jk", weights, np.where(same_side < 0, -rotations, rotations))
+    return np.asarray(mean / np.linalg.norm(mean, axis=-1, keepdims=True))
+
+
+def blend_body(table: CycleTable, cycles: Floats, weights: Floats, phase: float) -> tuple[Floats, Floats]:
+    """Hips (3,) m and local rotations (13, 4) of the UPPER joints at a phase of the cycle.
+
+    cycles, weights: (M,) indices into the table and their weights, summing to 1.
+    """
+    row = _sampled(table.body, cycles, weights, phase)
+    rotations = row[3:].reshape(-1, 4)
+    return row[:3], rotations / np.sqrt(np.einsum("jk,jk->j", rotations, rotations))[:, None]
+
+
+def blend_foot(table: CycleTable, side: int, cycles: Floats, weights: Floats, clock: float) -> Floats:
+    """(6,) FOOT_CHANNELS of the left (0) or right (1) foot at its own clock."""
+    return _sampled(table.feet[side], cycles, weights, clock)
+
+
+def _sampled(rows: Floats, cycles: Floats, weights: Floats, place: float) -> Floats:
+    """Weighted mean over cycles of rows (K, N + 1, C), linear between samples."""
+    position = place * (rows.shape[1] - 1)
+    sample = min(int(position), rows.shape[1] - 2)
+    share = position - sample
+    return np.asarray((weights * (1.0 - share)) @ rows[cycles, sample] + (weights * share) @ rows[cycles, sample + 1])

@@ -1,0 +1,95 @@
+"""Blend trees: which cycles, and how much of each, give a wanted parameter value. Any depth, any parameters.
+
+A branch orders its children along one parameter and mixes the two neighbours of the wanted value; what lies below a
+child is a cycle or another branch over another parameter. The trees of Niay (2022, section 3.1.2) are a branch over
+step frequency whose children are branches over speed. Weights only: knows no pose.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+class CoverageError(ValueError):
+    """A wanted value lies outside what the cycles of a tree cover."""
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """A cycle, by its index in the actor's table."""
+
+    cycle: int
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Children along one parameter.
+
+    parameter: "speed", "step_frequency", ...
+    unit:      for messages
+    places:    value of the parameter at each child, increasing
+    """
+
+    parameter: str
+    unit: str
+    places: tuple[float, ...]
+    children: tuple[Leaf | Branch, ...]
+
+    def __post_init__(self) -> None:
+        if len(self.places) != len(self.children) or not self.children:
+            raise ValueError(f"a branch over {self.parameter} needs one place per child")
+        if any(b <= a for a, b in zip(self.places, self.places[1:], strict=False)):
+            raise ValueError(f"the places of a branch over {self.parameter} must increase: {self.places}")
+
+
+Tree = Leaf | Branch
+
+
+def blend_weights(tree: Tree, wanted: Mapping[str, float]) -> dict[int, float]:
+    """Cycle index -> weight, not negative and summing to 1.
+
+    wanted: parameter -> value, for every parameter of the tree. Raises CoverageError outside the tree.
+    """
+    if isinstance(tree, Leaf):
+        return {tree.cycle: 1.0}
+    low, high, share = _neighbours(tree, wanted)
+    if share == 0.0:
+        return blend_weights(tree.children[low], wanted)
+    if share == 1.0:
+        return blend_weights(tree.children[high], wanted)
+    weights: dict[int, float] = {}
+    for child, part in ((low, 1.0 - share), (high, share)):
+        for cycle, weight in blend_weights(tree.children[child], wanted).items():
+            weights[cycle] = weights.get(cycle, 0.0) + part * weight
+    return weights
+
+
+def coverage(tree: Tree) -> dict[str, tuple[float, float]]:
+    """Parameter -> (lowest, highest) value that every branch over it covers."""
+    ranges: dict[str, tuple[float, float]] = {}
+    if isinstance(tree, Branch):
+        ranges[tree.parameter] = (tree.places[0], tree.places[-1])
+        for child in tree.children:
+            for parameter, (low, high) in coverage(child).items():
+                known = ranges.get(parameter, (low, high))
+                ranges[parameter] = (max(low, known[0]), min(high, known[1]))
+    return ranges
+
+
+def _neighbours(branch: Branch, wanted: Mapping[str, float]) -> tuple[int, int, float]:
+    value = wanted[branch.parameter]
+    places = branch.places
+    slack = 1e-9 * max(1.0, abs(places[-1]))
+    if not places[0] - slack <= value <= places[-1] + slack:
+        raise CoverageError(
+            f"{branch.parameter} {value:g} {branch.unit} is outside the cycles there are: "
+            f"{places[0]:g} to {places[-1]:g} {branch.unit}"
+        )
+    high = min(max(bisect_right(places, value), 1), len(places) - 1) if len(places) > 1 else 0
+    low = max(high - 1, 0)
+    if low == high:
+        return low, high, 0.0
+    share = (value - places[low]) / (places[high] - places[low])
+    return low, high, min(max(share, 0.0), 1.0)

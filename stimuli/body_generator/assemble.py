@@ -1,0 +1,177 @@
+"""A whole body from a figure: parts meshed, skinned, shaded, simplified and gathered by material."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from stimuli.body import Body, Surface
+from stimuli.body_generator.face import face_patches
+from stimuli.body_generator.fields import Field
+from stimuli.body_generator.figure import Figure
+from stimuli.body_generator.hair import cap_field, comb, style, style_names
+from stimuli.body_generator.head import head_frame
+from stimuli.body_generator.heat import Heat, bone_heat, weights_at
+from stimuli.body_generator.light import occlusion
+from stimuli.body_generator.parts import Part, parts_of
+from stimuli.body_generator.polygons import (
+    Mesh,
+    mirror_image,
+    normals_of,
+    polished,
+    polygonise,
+    settled,
+    simplified,
+)
+from stimuli.skeleton import PARENTS, Floats, Skeleton
+
+ROUGHNESS = {"skin": 0.55, "hair": 0.45, "shirt": 0.9, "trousers": 0.9, "shoes": 0.5, "soles": 0.8, "laces": 0.9,
+             "eye": 0.15, "iris": 0.12, "pupil": 0.1, "lash": 0.8, "brow": 0.8, "lip": 0.4}
+ORDER = tuple(ROUGHNESS)
+LEVELS = 3
+UNION_SPACING = 1.15  # cm
+HAIR_BUDGETS = (800, 300, 150)  # triangles of the cap
+LOCK_SEGMENTS = (4, 2, 0)
+LOCK_SHARE = (1.0, 0.55, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """Triangles with all their attributes, in cm."""
+
+    material: str
+    mesh: Mesh
+    normals: Floats
+    shade: Floats
+    own_weights: bool = True
+
+
+def build(figure: Figure, coarseness: float = 1.0, report: Callable[[str], None] = lambda _: None) -> Body:
+    """The body of a figure; `coarseness` > 1 widens every grid (for tests)."""
+    parts, everything = parts_of(figure)
+    report("weights")
+    heat = body_heat(figure, everything, coarseness)
+    levels: list[list[Piece]] = [[] for _ in range(LEVELS)]
+    for part in parts:
+        report(part.name)
+        for level, piece in enumerate(solid_pieces(part, everything, coarseness)):
+            levels[level] += piece
+    report("face")
+    face = next(part.field for part in parts if part.name == "head")
+    for level, fineness in enumerate((1.0, 0.5, 0.25)):
+        levels[level] += face_pieces(face, figure, fineness)
+    for name in style_names(figure):
+        report(name)
+        for level, pieces in enumerate(hair_pieces(name, figure, everything, coarseness)):
+            levels[level] += pieces
+    return gathered(figure, levels, heat)
+
+
+def body_heat(figure: Figure, everything: Field, coarseness: float = 1.0) -> Heat:
+    """Bone heat on one coarse mesh of the whole person."""
+    reach = figure.shoulder[0] + 0.5 * (figure.upper_arm + figure.forearm + figure.hand) + 6
+    lower, upper = np.array([-reach, -1.5, -20]), np.array([reach, figure.stature + 3, 24])
+    spacing = UNION_SPACING * coarseness
+    mesh = polished(polygonise(everything, lower, upper, spacing), everything, spacing, rounds=1)
+    return bone_heat(mesh, figure.bones())
+
+
+def solid_pieces(part: Part, everything: Field, coarseness: float = 1.0) -> list[list[Piece]]:
+    """The part at each level of detail, with its mirror image when it is one of two."""
+    spacing = part.spacing * coarseness
+    found: list[list[Piece]] = []
+    finest = None
+    for level, budget in enumerate(part.budgets):
+        field = part.field if level == 0 else part.plain
+        if finest is None or (level == 1 and part.plain is not part.field):
+            finest = polished(polygonise(field, part.lower, part.upper, spacing), field, spacing)
+        if budget == 0:
+            found.append([])
+            continue
+        mesh = simplified(finest, round(budget / coarseness))
+        mesh = Mesh(settled(field, mesh.positions, 0.35 * part.spacing), mesh.triangles)
+        edge = np.sqrt(_area(mesh) / max(len(mesh.triangles), 1))
+        normals = normals_of(field, mesh.positions, float(np.clip(0.22 * edge, 0.12, 0.5)))
+        shade = occlusion(everything, field, mesh.positions, normals)
+        piece = Piece(part.material, mesh, normals, shade)
+        found.append([piece, _mirror(piece)] if part.twin else [piece])
+    return found
+
+
+def face_pieces(face: Field, figure: Figure, fineness: float) -> list[Piece]:
+    patches = face_patches(face, head_frame(figure), figure.female, fineness)
+    return [Piece(p.material, p.mesh, p.normals, p.occlusion) for p in patches]
+
+
+def hair_pieces(name: str, figure: Figure, everything: Field, coarseness: float = 1.0) -> list[list[Piece]]:
+    """Cap and locks of one haircut at each level; the material is called hair:NAME."""
+    frame, cut = head_frame(figure), style(name, figure.female)
+    field = cap_field(cut, figure)
+    spacing = 0.42 * coarseness
+    lower = np.array([-13.0, figure.stature - 34, -22])
+    upper = np.array([13.0, figure.stature + 4, 13])
+    finest = polished(polygonise(field, lower, upper, spacing), field, spacing, rounds=1)
+    found = []
+    for budget, segments, share in zip(HAIR_BUDGETS, LOCK_SEGMENTS, LOCK_SHARE, strict=True):
+        mesh = simplified(finest, round(budget / coarseness))
+        normals = normals_of(field, mesh.positions, 0.3)
+        shade = occlusion(everything, field, mesh.positions, normals)
+        level = [Piece(f"hair:{name}", mesh, normals, shade * (0.62 if segments else 0.85))]
+        if segments:
+            locks = comb(cut, frame, finest, segments, share / coarseness)
+            open_sky = occlusion(everything, field, locks.mesh.positions, locks.normals)
+            level.append(Piece(f"hair:{name}", locks.mesh, locks.normals, locks.shade * (0.35 + 0.65 * open_sky)))
+        found.append(level)
+    return found
+
+
+def gathered(figure: Figure, levels: list[list[Piece]], heat: Heat) -> Body:
+    """Pieces joined by material, in metres, with four weights per vertex."""
+    joints = figure.joints() / 100
+    offsets = joints - np.array([joints[p] if p >= 0 else np.zeros(3) for p in PARENTS])
+    surfaces = tuple(_surfaces(figure, pieces, heat) for pieces in levels)
+    crown = max(float(s.positions[:, 1].max()) for s in surfaces[0] if s.name == "skin")
+    return Body(figure.name, Skeleton(offsets), crown, surfaces)
+
+
+def _surfaces(figure: Figure, pieces: list[Piece], heat: Heat) -> tuple[Surface, ...]:
+    names = sorted(dict.fromkeys(p.material for p in pieces), key=lambda n: ORDER.index(n.split(":")[0]))
+    return tuple(_surface(figure, name, [p for p in pieces if p.material == name], heat) for name in names)
+
+
+def _surface(figure: Figure, name: str, pieces: list[Piece], heat: Heat) -> Surface:
+    positions = np.concatenate([p.mesh.positions for p in pieces])
+    counts = np.cumsum([0] + [len(p.mesh.positions) for p in pieces])
+    triangles = np.concatenate([p.mesh.triangles + first for p, first in zip(pieces, counts[:-1], strict=True)])
+    kind = name.split(":")[0]
+    joints, weights = weights_at(heat, positions) if not name.startswith("hair") else _head_only(len(positions))
+    return Surface(
+        name=name,
+        colour=np.array(figure.colours[kind]),
+        roughness=ROUGHNESS[kind],
+        positions=positions / 100,
+        normals=np.concatenate([p.normals for p in pieces]),
+        occlusion=np.concatenate([p.shade for p in pieces]),
+        joints=joints,
+        weights=weights,
+        triangles=triangles,
+    )
+
+
+def _head_only(count: int) -> tuple[Floats, Floats]:
+    from stimuli.skeleton import JOINTS
+
+    joints = np.zeros((count, 4), dtype=int)
+    joints[:, 0] = JOINTS.index("head")
+    return joints, np.tile([1.0, 0, 0, 0], (count, 1))
+
+
+def _mirror(piece: Piece) -> Piece:
+    return Piece(piece.material, mirror_image(piece.mesh), piece.normals * (-1, 1, 1), piece.shade)
+
+
+def _area(mesh: Mesh) -> float:
+    a, b, c = (mesh.positions[mesh.triangles[:, i]] for i in range(3))
+    return float(np.sum(np.linalg.norm(np.cross(b - a, c - a), axis=1)) / 2)

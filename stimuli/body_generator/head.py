@@ -1,0 +1,188 @@
+"""Head and neck as one field, from horizontal sections and the features of a face.
+
+Coordinates are those of a man whose crown is at 175 cm (`HeadFrame` brings them to the figure): y up, z forwards,
+origin of x and z below the ear canal's plane. Sections follow a head of 15.4 x 19.9 cm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import RegularGridInterpolator
+from scipy.ndimage import gaussian_filter
+
+from stimuli.body_generator.fields import (
+    Field,
+    both_sides,
+    capsule,
+    cut,
+    ellipsoid,
+    generalised_cylinder,
+    join,
+    mirrored,
+    smooth_max,
+)
+from stimuli.body_generator.figure import Figure
+from stimuli.skeleton import Floats
+
+CROWN = 175.0
+
+# height; 0, 0; half breadth twice; back, front; exponent
+_SECTIONS_MAN = (
+    (151.8, 0, 0, 1.4, 1.4, -2.0, 7.2, 2.0),
+    (152.6, 0, 0, 2.9, 2.9, 0.5, 8.3, 2.0),
+    (153.8, 0, 0, 4.1, 4.1, 2.5, 8.8, 2.0),
+    (155.5, 0, 0, 5.1, 5.1, 5.0, 8.75, 2.0),
+    (157.2, 0, 0, 5.85, 5.85, 7.4, 8.9, 2.0),
+    (159.2, 0, 0, 6.4, 6.4, 8.8, 9.0, 2.05),
+    (161.2, 0, 0, 6.85, 6.85, 9.5, 8.95, 2.1),
+    (163.2, 0, 0, 7.25, 7.25, 10.0, 8.9, 2.1),
+    (164.8, 0, 0, 7.5, 7.5, 10.2, 9.25, 2.1),
+    (166.5, 0, 0, 7.65, 7.65, 10.2, 9.25, 2.15),
+    (168.3, 0, 0, 7.55, 7.55, 10.0, 8.85, 2.15),
+    (170.2, 0, 0, 7.05, 7.05, 9.3, 8.0, 2.1),
+    (172.0, 0, 0, 6.05, 6.05, 8.1, 6.7, 2.05),
+    (173.4, 0, 0, 4.7, 4.7, 6.4, 5.2, 2.0),
+    (174.4, 0, 0, 3.1, 3.1, 4.3, 3.4, 2.0),
+    (174.95, 0, 0, 1.0, 1.0, 1.4, 1.1, 2.0),
+)
+_JAW_WOMAN = {151.8: 0.80, 152.6: 0.80, 153.8: 0.84, 155.5: 0.88, 157.2: 0.92, 159.2: 0.95, 161.2: 0.98}
+
+
+@dataclass(frozen=True)
+class HeadFrame:
+    """Turns head coordinates of the 175 cm man into a figure's (cm)."""
+
+    scale: float
+    crown: float
+
+    def to_figure(self, points: Floats) -> Floats:
+        return (np.asarray(points, dtype=np.float64) - (0, CROWN, 0)) * self.scale + (0, self.crown, 0)
+
+    def to_head(self, points: Floats) -> Floats:
+        return (points - (0, self.crown, 0)) / self.scale + (0, CROWN, 0)
+
+
+def head_frame(figure: Figure) -> HeadFrame:
+    return HeadFrame(figure.head_scale, figure.stature)
+
+
+def head(figure: Figure, chest: Field) -> Field:
+    """Head with ears, and the neck down into the collar, where it runs out on the `chest` under the shirt."""
+    frame = head_frame(figure)
+    face = _face(figure.female)
+    neck = _neck(figure)
+
+    def field(points: Floats) -> Floats:
+        return face(frame.to_head(points)) * frame.scale
+
+    low = figure.neck[1] - 11.0
+    under_shirt = lambda p: smooth_max(  # noqa: E731
+        chest(p), np.maximum(low - p[:, 1], np.abs(p[:, 0]) - 10.0), 0.5
+    )
+    return join(field, (neck, 2.4), (under_shirt, 1.6))
+
+
+def skull_field(female: bool) -> Field:
+    """The head without features, in head coordinates: what hair grows on.
+
+    Measured along rays from the middle of the head, so that it stays round far above the skin too.
+    """
+    middle = np.array([0.0, 163.5, -0.5])
+    azimuth, height = np.linspace(-np.pi, np.pi, 145), np.linspace(-1, 1, 121)
+    a, h = (g.ravel() for g in np.meshgrid(azimuth, height, indexing="ij"))
+    flat = np.sqrt(1 - h * h)
+    rays = np.column_stack([flat * np.sin(a), h, flat * np.cos(a)])
+    near, far = np.zeros(len(rays)), np.full(len(rays), 16.0)
+    skull = _sections(female)
+    for _ in range(28):
+        half = 0.5 * (near + far)
+        inside = skull(middle + half[:, None] * rays) < 0
+        near, far = np.where(inside, half, near), np.where(inside, far, half)
+    grid = gaussian_filter(near.reshape(145, 121), 1.5, mode=("wrap", "nearest"))
+    table = RegularGridInterpolator((azimuth, height), grid)
+
+    def field(points: Floats) -> Floats:
+        local = points - middle
+        length = np.maximum(np.linalg.norm(local, axis=1), 1e-6)
+        angle = np.arctan2(local[:, 0], local[:, 2])
+        return length - table(np.column_stack([angle, np.clip(local[:, 1] / length, -1, 1)]))
+
+    return field
+
+
+def _sections(female: bool) -> Field:
+    rows = [
+        (y, 0, 0, a * k, b * k, max(back, 0.4), front - (0.25 if female and y > 164 else 0.0), n)
+        for y, _, _, a, b, back, front, n in _SECTIONS_MAN
+        for k in (_JAW_WOMAN.get(y, 1.0) if female else 1.0,)
+    ]
+    return generalised_cylinder((0, 0, 0), (0, 1, 0), (1, 0, 0), rows, rounding=0.8)
+
+
+def _face(female: bool) -> Field:
+    skull = _sections(female)
+    strong = 0.0 if female else 1.0
+    jaw = mirrored(ellipsoid((4.3 + 0.25 * strong, 156.9, 2.0), (1.1 + 0.25 * strong, 2.2, 2.6)))
+    chin = ellipsoid((0, 153.75, 7.55), (1.75 + 0.5 * strong, 1.45, 1.35))
+    muzzle = ellipsoid((0, 157.0, 7.0), (3.0, 2.3, 2.35))
+    cheek = mirrored(ellipsoid((4.5, 161.0, 5.7), (1.9, 1.6, 1.7)))
+    apple = mirrored(ellipsoid((3.6, 159.7, 6.9), (1.7, 1.6, 1.2)))
+    hollow_fill = mirrored(ellipsoid((3.8, 157.6, 4.9), (1.35 + 0.1 * strong, 2.8, 2.3)))
+    brow = mirrored(ellipsoid((2.9, 165.35, 8.05), (2.3 + 0.3 * strong, 0.62 + 0.18 * strong, 0.85 + 0.3 * strong)))
+    shape = join(skull, (jaw, 2.2), (chin, 2.0), (muzzle, 1.6), (cheek, 2.4), (apple, 2.0), (hollow_fill, 2.6), (brow, 1.6))
+    shape = cut(shape, mirrored(ellipsoid((3.15, 163.35, 10.5), (1.85, 1.15, 2.15 + 0.15 * strong))), 1.5)
+    shape = cut(shape, mirrored(ellipsoid((7.6, 166.5, 6.0), (1.0, 2.5, 2.8))), 1.6)  # temples
+    lids = mirrored(ellipsoid((3.2, 163.2, 6.95), (1.55, 1.16, 1.45)))
+    shape = join(shape, (lids, 0.55))
+    wide = 1.0 if strong else 0.88
+    up = 0.0 if strong else 0.25
+    bridge = capsule((0, 164.2, 8.55), (0, 160.5 + up, 10.35 - 0.6 * up), 0.62 * wide, 0.82 * wide)
+    tip = ellipsoid((0, 160.15 + up, 10.4 - 0.4 * up), (1.0 * wide, 0.85, 1.0))
+    wing = mirrored(ellipsoid((1.12 * wide, 159.8 + 0.6 * up, 9.55), (0.62 * wide, 0.64, 0.9)))
+    shape = join(shape, (bridge, 1.5), (tip, 0.9), (wing, 0.55))
+    nostril = mirrored(ellipsoid((0.58 * wide, 159.1 + 0.8 * up, 9.95), (0.36, 0.3, 0.5)))
+    shape = cut(shape, nostril, 0.3)
+    full = 1.15 if female else 0.95
+    upper = both_sides(ellipsoid((0.62, 157.42, 9.08), (1.35, 0.42 * full, 0.72)), 0.5)
+    lower = ellipsoid((0, 156.5, 8.98), (1.75, 0.52 * full, 0.8))
+    shape = join(shape, (upper, 0.6), (lower, 0.6))
+    philtrum = capsule((0, 159.0, 9.75), (0, 158.0, 9.85), 0.22, 0.2)
+    shape = cut(shape, philtrum, 0.5)
+    return join(shape, (_ear(), 0.5))
+
+
+def _ear() -> Field:
+    """Both ears: a tilted disc with a rim, a hollow and a lobe, standing off the head by 20 degrees."""
+    tilt, off = np.radians(10), np.radians(22)
+    back = np.array([np.sin(off), 0, -np.cos(off)])
+    up = np.array([0, np.cos(tilt), -np.sin(tilt)])
+    up = up - back * (up @ back)
+    up /= np.linalg.norm(up)
+    out = np.cross(up, back)
+    out = out if out[0] > 0 else -out
+    axes = np.stack([out, up, back])
+    centre = np.array([7.85, 162.0, -0.9])
+    disc = ellipsoid(centre, (0.75, 3.1, 1.75), axes)
+    lobe = ellipsoid(centre - 2.5 * up - 0.5 * back, (0.5, 0.85, 0.75), axes)
+    hollow = ellipsoid(centre + 0.75 * out - 0.3 * up - 0.35 * back, (0.85, 1.6, 0.95), axes)
+    groove = ellipsoid(centre + 0.8 * out + 1.35 * up + 0.15 * back, (0.6, 1.15, 0.95), axes)
+    ear = cut(cut(join(disc, (lobe, 0.6)), hollow, 0.35), groove, 0.3)
+    return mirrored(ear)
+
+
+def _neck(figure: Figure) -> Field:
+    """Neck leaning forwards, with the two sterno-mastoid cords and, on men, the larynx; wide at the shoulders."""
+    frame = head_frame(figure)
+    r, base = figure.neck_radius, figure.neck[1]
+    top = frame.to_figure(np.array([0, 159.0, -2.2]))
+    column = capsule((0, base - 6, -1.9), top, r * 1.03, r * 0.90)
+    behind = frame.to_figure(np.array([6.2, 160.5, -2.4]))
+    thick = 0.45 if figure.female else 0.75
+    cord = mirrored(capsule((1.2, base - 5.0, r * 0.50), behind * (0.82, 1, 1), thick, thick + 0.4))
+    whole = join(column, (cord, 2.2))
+    if figure.female:
+        return whole
+    larynx = ellipsoid(frame.to_figure(np.array([0, 152.0, 3.6])) - (0, 2.2, 0), (0.9, 1.3, 1.0))
+    return join(whole, (larynx, 1.6))

@@ -1,0 +1,172 @@
+"""Bare arms with relaxed hands, and shoes: left-hand fields; the right is their mirror image."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stimuli.body_generator.fields import (
+    Field,
+    capsule,
+    cut,
+    ellipsoid,
+    generalised_cylinder,
+    half_space,
+    join,
+    smooth_max,
+)
+from stimuli.body_generator.figure import Figure
+from stimuli.skeleton import Floats
+
+# place across the palm (towards the thumb), length, radius, bend at the knuckle in degrees; index to little finger
+_FINGERS = ((2.9, 7.3, 0.84, 16.0), (0.95, 8.0, 0.87, 20.0), (-1.0, 7.5, 0.83, 25.0), (-2.75, 5.9, 0.74, 31.0))
+_PHALANGES = (0.46, 0.30, 0.24)  # share of a finger's length
+_CURL = (0.0, 26.0, 14.0)  # degrees added at each finger joint
+
+
+def arm(figure: Figure) -> Field:
+    """The left arm from just inside the sleeve to the finger tips."""
+    shoulder, along = np.array(figure.shoulder), figure.arm_direction
+    start = figure.sleeve[-1][0] - 3.2
+    stations = tuple(row for row in figure.arm if row[0] > start + 1)
+    first = figure.arm[0]
+    stations = ((start, *first[1:]), *stations)
+    limb = generalised_cylinder(shoulder, along, (0, 0, -1), stations, rounding=0.8)
+    elbow = shoulder + figure.upper_arm * along
+    thin = figure.arm[3][3]
+    point = ellipsoid(elbow + (0, 0, -thin * 0.72), (thin * 0.42, thin * 0.62, thin * 0.42))
+    return join(limb, (point, 1.6), (hand(figure), 2.6))
+
+
+def hand(figure: Figure) -> Field:
+    """Palm, four fingers and a thumb hanging relaxed, the palm towards the thigh."""
+    along = figure.arm_direction
+    wrist = np.array(figure.shoulder) + (figure.upper_arm + figure.forearm) * along
+    thumb_side = np.array([0.0, 0.0, 1.0])
+    inwards = np.array([-np.cos(np.radians(30)), -np.sin(np.radians(30)), 0.0])
+    k = figure.hand_scale
+    slim = 0.90 if figure.female else 1.0
+
+    def at(s: float, t: float, m: float) -> Floats:
+        return wrist + k * (s * along + t * thumb_side + m * inwards)
+
+    palm_rows = [
+        (-2.6, 0.0, 0, 2.0, 2.0, 1.2, 1.2, 2.3),
+        (0.0, 0.0, 0, 2.7, 2.6, 1.5, 1.6, 2.4),
+        (2.5, 0.1, 0, 3.5, 3.4, 1.45, 1.75, 2.5),
+        (5.5, 0.1, 0, 4.0, 3.9, 1.3, 1.55, 2.6),
+        (8.5, 0.1, 0, 4.05, 3.9, 1.15, 1.3, 2.6),
+        (10.0, 0.1, 0, 3.8, 3.6, 0.95, 1.05, 2.6),
+    ]
+    rows = [(s * k, cu * k, 0, a * k * slim, b * k * slim, c * k * slim, d * k * slim, n) for s, cu, _, a, b, c, d, n in palm_rows]
+    parts: list[tuple[Field, float]] = [
+        (ellipsoid(at(3.4, 2.4, 1.0), (1.9 * k, 2.9 * k, 1.5 * k)), 1.2),  # ball of the thumb
+        (ellipsoid(at(5.0, -2.4, 0.7), (1.4 * k, 2.6 * k, 1.4 * k)), 1.0),
+    ]
+    palm = generalised_cylinder(wrist, along, thumb_side, rows, rounding=0.9)
+    for place, length, radius, bend in _FINGERS:
+        base = at(9.3 - 0.12 * abs(place - 0.9) ** 1.4, place, 0.1)
+        angle, tip = np.radians(bend), base
+        r = radius * k * slim
+        fan = 0.035 * place
+        for i, (share, curl) in enumerate(zip(_PHALANGES, _CURL, strict=True)):
+            angle += np.radians(curl)
+            direction = np.cos(angle) * along + np.sin(angle) * inwards + fan * thumb_side
+            end = tip + k * length * share * direction
+            parts.append((capsule(tip, end, r * (1.0, 0.95, 0.9)[i], r * (0.95, 0.9, 0.74)[i]), 0.35 if i else 0.7))
+            tip = end
+    thumb = [at(2.2, 2.9, 0.9), at(5.6, 4.9, 1.9), at(8.5, 5.7, 2.4), at(10.8, 5.75, 2.75)]
+    for i in range(3):
+        radius = (1.25, 1.02, 0.9)[i] * k * slim
+        parts.append((capsule(thumb[i], thumb[i + 1], radius, radius * 0.86), 1.3 if i == 0 else 0.4))
+    return join(palm, *parts)
+
+
+def _shoe_frame(figure: Figure) -> tuple[Floats, Floats, Floats]:
+    """Origin on the floor below the ankle, forward direction (a little outwards) and the direction outwards."""
+    x, _, z = figure.ankle
+    forward = np.array([0.085, 0.0, 1.0])
+    forward /= np.linalg.norm(forward)
+    return np.array([x, 0.0, z]), forward, np.array([forward[2], 0.0, -forward[0]])
+
+
+# distance from the ankle; centre outwards and height of the centre; outer, inner; up, down; exponent (cm, foot 27.1)
+_UPPER = (
+    (-7.0, 0.0, 4.2, 2.2, 2.2, 3.0, 4.2, 2.2),
+    (-5.8, 0.0, 4.2, 3.3, 3.2, 3.9, 4.2, 2.3),
+    (-3.0, 0.0, 4.2, 3.9, 3.7, 4.9, 4.2, 2.3),
+    (1.0, 0.0, 4.0, 4.0, 3.6, 5.3, 4.0, 2.3),
+    (4.5, 0.1, 3.6, 4.2, 3.6, 4.5, 3.6, 2.3),
+    (8.0, 0.2, 3.0, 4.5, 4.0, 3.7, 3.0, 2.3),
+    (12.5, 0.3, 2.6, 4.8, 4.5, 2.8, 2.6, 2.4),
+    (16.5, 0.1, 2.4, 4.4, 4.5, 2.2, 2.4, 2.4),
+    (19.0, -0.3, 2.3, 3.3, 3.8, 1.8, 2.3, 2.3),
+    (20.5, -0.6, 2.2, 1.8, 2.3, 1.3, 2.2, 2.2),
+)
+_OUTLINE = (
+    (-7.4, 0.0, 1.2, 2.0, 2.0, 1.4, 1.4, 3),
+    (-6.2, 0.0, 1.2, 3.4, 3.3, 1.5, 1.4, 4),
+    (-3.0, 0.0, 1.2, 4.0, 3.8, 1.5, 1.4, 4),
+    (3.0, 0.1, 1.1, 4.0, 3.3, 1.4, 1.4, 4),
+    (8.0, 0.2, 1.1, 4.5, 3.8, 1.3, 1.4, 4),
+    (12.5, 0.3, 1.1, 4.95, 4.6, 1.2, 1.4, 4),
+    (16.5, 0.1, 1.1, 4.6, 4.65, 1.2, 1.4, 4),
+    (19.4, -0.3, 1.3, 3.4, 3.9, 1.2, 1.4, 3.5),
+    (20.9, -0.6, 1.5, 1.9, 2.4, 1.1, 1.3, 3),
+)
+
+
+def _scaled_rows(figure: Figure, rows: tuple[tuple[float, ...], ...]) -> list[tuple[float, ...]]:
+    k = figure.foot_scale
+    wide = 0.93 if figure.female else 1.0
+    return [(s * k, cu * k, cw * k, a * k * wide, b * k * wide, c * k, d * k, n) for s, cu, cw, a, b, c, d, n in rows]
+
+
+def shoe(figure: Figure) -> Field:
+    """Upper of the left shoe with tongue, collar and eyelet stays."""
+    origin, forward, outwards = _shoe_frame(figure)
+    k = figure.foot_scale
+    upper = generalised_cylinder(origin, forward, outwards, _scaled_rows(figure, _UPPER), rounding=1.2)
+
+    def at(s: float, o: float, y: float) -> Floats:
+        return origin + k * (s * forward + o * outwards + y * np.array([0, 1.0, 0]))
+
+    shaft = capsule(at(-1.3, 0, 5.5), at(-1.0, 0, 9.2), 4.1 * k, 3.7 * k)
+    tongue = capsule(at(3.3, 0, 8.6), at(9.0, 0.2, 5.6), 1.5 * k, 1.7 * k)
+    collar_hole = capsule(at(-1.0, 0, 8.8), at(-0.8, 0, 13), 3.0 * k, 3.6 * k)
+    top = half_space((0, 1, -0.28), at(-1, 0, 9.6))
+    body = join(upper, (shaft, 2.2), (tongue, 1.2))
+    toe_cap = capsule(at(15.2, -4.2, 3.4), at(15.2, 4.2, 3.4), 0.12 * k, 0.12 * k)
+    shaped = cut(lambda p: smooth_max(body(p), top(p), 0.8), collar_hole, 0.5)
+    return cut(shaped, toe_cap, 0.3)
+
+
+def sole(figure: Figure) -> Field:
+    """The sole, a little wider than the upper and flat on the floor, the toe lifted slightly."""
+    origin, forward, outwards = _shoe_frame(figure)
+    slab = generalised_cylinder(origin, forward, outwards, _scaled_rows(figure, _OUTLINE), rounding=0.8)
+    waist = ellipsoid(origin + figure.foot_scale * (4.0 * forward), (8.0, 0.5, 3.2))
+    floor = half_space((0, -1, 0), (0, 0.0, 0))
+    return cut(lambda p: smooth_max(slab(p), floor(p), 0.25), waist, 0.3)
+
+
+def laces(figure: Figure) -> Field:
+    """Five laces across the tongue and a small bow."""
+    origin, forward, outwards = _shoe_frame(figure)
+    k = figure.foot_scale
+
+    def at(s: float, o: float, y: float) -> Floats:
+        return origin + k * (s * forward + o * outwards + y * np.array([0, 1.0, 0]))
+
+    rods: list[tuple[Field, float]] = []
+    for i in range(5):
+        s = 4.6 + 1.5 * i
+        y = 9.35 - 0.68 * i
+        wide = 1.7 + 0.12 * i
+        for side in (1, -1):
+            rods.append((capsule(at(s, 0, y), at(s + 0.6, side * wide, y - 1.15), 0.24 * k, 0.22 * k), 0.05))
+    for side in (1, -1):
+        rods.append((capsule(at(4.5, 0, 9.6), at(4.0, side * 1.9, 9.35), 0.3 * k, 0.24 * k), 0.1))
+        rods.append((capsule(at(4.5, 0, 9.6), at(5.9, side * 1.6, 9.0), 0.22 * k, 0.2 * k), 0.1))
+    first, *rest = rods
+    return join(first[0], *rest)
+

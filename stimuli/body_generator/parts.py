@@ -1,0 +1,72 @@
+"""The solid parts of a figure: field, box, grid spacing and triangle budgets of each. Knows no hair, face or file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stimuli.body_generator.fields import Field, grown, join, mirrored
+from stimuli.body_generator.figure import Figure
+from stimuli.body_generator.garments import clothes
+from stimuli.body_generator.head import head
+from stimuli.body_generator.limbs import arm, laces, shoe, sole
+from stimuli.skeleton import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One closed solid in one material.
+
+    lower, upper: (3,) cm, the box it lies in; spacing: cm of the grid it is cut from.
+    budgets:      triangles at each level of detail; 0 leaves it out.
+    twin:         it is the left one of two, the right one being its mirror image (budgets are for one).
+    """
+
+    name: str
+    material: str
+    field: Field
+    plain: Field  # without openings, for the coarse levels
+    lower: Floats
+    upper: Floats
+    spacing: float
+    budgets: tuple[int, int, int]
+    twin: bool
+
+
+def parts_of(figure: Figure) -> tuple[tuple[Part, ...], Field]:
+    """All solid parts, and one field of the whole person (for weights and ambient occlusion)."""
+    worn = clothes(figure)
+    left_arm, left_shoe, left_sole, face = arm(figure), shoe(figure), sole(figure), head(figure, worn.chest)
+    hand_end = np.array(figure.shoulder) + (figure.upper_arm + figure.forearm + figure.hand) * figure.arm_direction
+    sleeve_end = np.array(figure.shoulder) + (figure.sleeve[-1][0] - 3.5) * figure.arm_direction
+    x, _, z = figure.ankle
+    k = figure.foot_scale
+    hem = figure.shirt[0][0]
+    neck_y = figure.neck[1]
+
+    def part(
+        name: str, material: str, field: Field, lower: tuple[float, ...], upper: tuple[float, ...],
+        spacing: float, budgets: tuple[int, int, int], twin: bool = False, plain: Field | None = None,
+    ) -> Part:
+        return Part(name, material, field, plain or field, np.array(lower, float), np.array(upper, float), spacing, budgets, twin)
+
+    wide = sleeve_end[0] + 11
+    arm_low = (sleeve_end[0] - 7, hand_end[1] - 2, -9)
+    arm_high = (hand_end[0] + 6, sleeve_end[1] + 5, 9)
+    found = (
+        part("head", "skin", face, (-12, neck_y - 12.5, -15), (12, figure.stature + 2, 15), 0.38, (4800, 1500, 330),
+             plain=head(figure, grown(worn.chest, -0.7))),
+        part("arm", "skin", left_arm, arm_low, arm_high, 0.32, (1600, 480, 140), True),
+        part("shirt", "shirt", worn.shirt, (-wide, hem - 2, -19), (wide, neck_y + 5, 19), 0.50, (4800, 1500, 330),
+             plain=worn.closed_shirt),
+        part("trousers", "trousers", worn.trousers, (-21, 1, -19), (21, hem + 22, 17), 0.55, (4200, 1400, 330),
+             plain=worn.closed_trousers),
+        part("shoe", "shoes", left_shoe, (x - 7, -1, z - 10 * k), (x + 8, 14, z + 24 * k), 0.36, (620, 180, 56), True),
+        part("sole", "soles", left_sole, (x - 7, -1.5, z - 10 * k), (x + 8, 4, z + 24 * k), 0.36, (300, 110, 30), True),
+        part("laces", "laces", laces(figure), (x - 5, 3, z), (x + 5, 13, z + 14), 0.14, (220, 50, 0), True),
+    )
+    everything = join(
+        worn.body, (face, 0.6), (mirrored(left_arm), 0.3), (mirrored(left_shoe), 0.5), (mirrored(left_sole), 0.3)
+    )
+    return found, everything

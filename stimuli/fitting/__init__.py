@@ -1,0 +1,1 @@
+"""Development side of the gait model: reads captures and tables, fits, writes coefficients. Not used at run time."""

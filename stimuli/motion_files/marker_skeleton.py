@@ -1,0 +1,336 @@
+"""From markers to a walking skeleton: segments scaled to the person, then all markers fitted at once.
+
+The pose of every frame minimises the squared distances of all markers and joint centres from where a skeleton of
+constant bone lengths carries them (global optimisation, Lu & O'Connor, J. Biomech. 32, 1999). Solved segment by segment:
+with everything else held, the best rotation of one segment has a closed form (Kabsch, Acta Cryst. A32, 1976), and what
+hangs on it counts as one heavy marker at the next joint. Sweeps repeat until nothing moves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stimuli.clip import Clip
+from stimuli.motion_files.errors import MotionFileError
+from stimuli.motion_files.joint_centres import joint_centres, pelvis_axes, unit
+from stimuli.motion_files.markers import MarkerRecording, filled, seen_part
+from stimuli.rotations import continuous, from_matrix, inverse, multiply
+from stimuli.skeleton import JOINTS, PARENTS
+
+Floats = NDArray[np.floating]
+
+NEEDED = ("asis", "lateral_knee", "lateral_ankle", "heel", "toe")
+CARRIED = {
+    "UpperLeg": ("trochanter", "thigh", "lateral_knee", "medial_knee"),
+    "LowerLeg": ("fibula_head", "tibial_tuberosity", "shank", "lateral_ankle", "medial_ankle"),
+    "Foot": ("heel", "first_toe", "toe", "fifth_toe"),
+    "Shoulder": ("shoulder",),
+    "UpperArm": ("lateral_elbow", "medial_elbow"),
+    "LowerArm": ("thumb_wrist", "little_wrist"),
+    "Hand": ("finger", "little_finger"),
+}
+CENTRE_WEIGHT = 1.0  # a joint centre counts like one marker
+HOLD = 1e-3  # m²: how weakly a segment is held to its first guess, which decides only what no marker tells
+SWEEPS = 30
+STILL = 1e-5  # m: sweeps end when no joint moves more
+
+
+@dataclass(frozen=True, eq=False)
+class MarkerFit:
+    """A skeleton fitted to markers, and how well.
+
+    residual:          m, root mean square distance of markers from the skeleton's
+    marker_residuals:  place -> m, root mean square over frames
+    centre_distances:  VRM humanoid joint -> m, largest distance over frames from the joint centre of its markers
+    """
+
+    clip: Clip
+    residual: float
+    marker_residuals: dict[str, float]
+    centre_distances: dict[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class _Body:
+    """Joints with their markers. offsets: (J, 3) m; markers[j]: places; local[j]: (m, 3) m in the joint's axes."""
+
+    joints: tuple[str, ...]
+    parents: tuple[int, ...]
+    offsets: Floats
+    markers: tuple[tuple[str, ...], ...]
+    local: tuple[Floats, ...]
+
+
+def markers_to_clip(recording: MarkerRecording) -> Clip:
+    """The skeleton's motion as a clip; see `fit_markers`."""
+    return fit_markers(recording).clip
+
+
+def fit_markers(recording: MarkerRecording) -> MarkerFit:
+    """A skeleton of the person in a marker recording, moving as the markers do.
+
+    Needs front and back pelvis markers, lateral knees and ankles, heels and toes (Plug-in-Gait, Schreiber & Moissenet
+    and their kin); trunk and arms are added where their markers are. Raises MotionFileError naming what is missing.
+    """
+    places = _seen(recording)
+    _check(recording, places)
+    recording = seen_part(recording, [place for place in places if place.endswith(NEEDED)])
+    raw = {place: recording.path_of(place) for place in places}
+    paths = {place: filled(path) for place, path in raw.items()}
+    centres = joint_centres(paths)
+    joints = tuple(joint for joint in JOINTS if joint in centres)
+    guess = _first_guess(paths, centres, joints)
+    body = _body(joints, centres, paths, guess)
+    rotations, root = _solve(body, raw, centres, guess)
+    clip = _clip(recording, body, rotations, root)
+    return _judged(clip, body, raw, centres, rotations, root)
+
+
+def _seen(recording: MarkerRecording) -> list[str]:
+    return [p for p, index in recording.places.items() if np.isfinite(recording.points[:, index]).all(axis=-1).any()]
+
+
+def _check(recording: MarkerRecording, places: list[str]) -> None:
+    missing = [f"{side}_{place}" for side in ("left", "right") for place in NEEDED if f"{side}_{place}" not in places]
+    if "sacrum" not in places and not {"left_psis", "right_psis"} <= set(places):
+        missing.append("left_psis and right_psis, or sacrum")
+    if missing:
+        raise MotionFileError(
+            f"{recording.name}: no marker is seen at {', '.join(missing)}; a skeleton needs them, labelled as in "
+            f"Plug-in-Gait or by Schreiber & Moissenet"
+        )
+
+
+def _parents(joints: tuple[str, ...]) -> tuple[int, ...]:
+    parents = []
+    for joint in joints:
+        above = PARENTS[JOINTS.index(joint)]
+        while above >= 0 and JOINTS[above] not in joints:
+            above = PARENTS[above]
+        parents.append(joints.index(JOINTS[above]) if above >= 0 else -1)
+    return tuple(parents)
+
+
+def _axes(up: Floats, left: Floats) -> Floats:
+    """(T, 3, 3) with columns left, up, forward: up kept, left made square to it."""
+    up = unit(up)
+    left = unit(left - np.sum(left * up, axis=-1, keepdims=True) * up)
+    return np.stack([left, up, np.cross(left, up)], axis=-1)
+
+
+def _first_guess(paths: dict[str, Floats], centres: dict[str, Floats], joints: tuple[str, ...]) -> dict[str, Floats]:
+    """Joint -> (T, 3, 3) anatomical axes: bones along -Y, left +X; feet and pelvis as they stand."""
+    _, left, up, _ = pelvis_axes(paths)
+    guess = {"hips": _axes(up * 0 + up, left)}
+    if "spine" in joints:
+        shoulders = paths["left_shoulder"] - paths["right_shoulder"] if "left_shoulder" in paths else left
+        trunk = _axes(centres["neck"] - centres["spine"], shoulders)
+        guess.update({joint: trunk for joint in ("spine", "chest", "neck", "head") if joint in joints})
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        knee = _across(paths, f"{side}_lateral_knee", f"{side}_medial_knee", sign, left)
+        ankle = _across(paths, f"{side}_lateral_ankle", f"{side}_medial_ankle", sign, left)
+        hip, mid, low = (centres[side + part] for part in ("UpperLeg", "LowerLeg", "Foot"))
+        guess[f"{side}UpperLeg"] = _axes(hip - mid, knee)
+        guess[f"{side}LowerLeg"] = _axes(mid - low, ankle)
+        guess[f"{side}Foot"] = guess[f"{side}Toes"] = _foot_axes(paths, side, ankle)
+        for part, below in (("Shoulder", ""), ("UpperArm", "LowerArm"), ("LowerArm", "Hand"), ("Hand", "")):
+            joint = side + part
+            if joint not in joints:
+                continue
+            above = guess.get(f"{side}LowerArm" if part == "Hand" else "chest", guess["hips"])
+            guess[joint] = above
+            if below and side + below in joints:
+                elbow = _across(paths, f"{side}_lateral_elbow", f"{side}_medial_elbow", sign, above[..., 0])
+                guess[joint] = _axes(centres[joint] - centres[side + below], elbow)
+    return guess
+
+
+def _across(paths: dict[str, Floats], lateral: str, medial: str, sign: float, default: Floats) -> Floats:
+    """(T, 3) a joint's axis pointing left; the default without its medial marker."""
+    return sign * (paths[lateral] - paths[medial]) if lateral in paths and medial in paths else default
+
+
+def _foot_axes(paths: dict[str, Floats], side: str, left: Floats) -> Floats:
+    """(T, 3, 3) axes of a foot in which it stands level: its posture in the frames it moves least is unturned."""
+    heel, toe = paths[f"{side}_heel"], paths[f"{side}_toe"]
+    forward = unit(toe - heel)
+    left = unit(left - np.sum(left * forward, axis=-1, keepdims=True) * forward)
+    axes = np.stack([left, np.cross(forward, left), forward], axis=-1)
+    speed = np.linalg.norm(np.gradient(heel + toe, axis=0), axis=1) if len(heel) > 1 else np.zeros(1)
+    still = speed <= np.quantile(speed, 0.15)
+    ahead = forward[still] * [1.0, 0.0, 1.0]
+    level = _axes(np.tile([0.0, 1.0, 0.0], (int(still.sum()), 1)), np.cross([0.0, 1.0, 0.0], ahead))
+    correction = _nearest_rotation(np.mean(np.swapaxes(axes[still], -1, -2) @ level, axis=0))
+    return axes @ correction
+
+
+def _nearest_rotation(matrices: Floats) -> Floats:
+    """(..., 3, 3) the rotations nearest to matrices in the least squares sense."""
+    u, _, v = np.linalg.svd(matrices)
+    u = u.copy()
+    u[..., :, 2] *= np.where(np.linalg.det(u @ v) < 0, -1.0, 1.0)[..., None]
+    return u @ v
+
+
+def _body(
+    joints: tuple[str, ...], centres: dict[str, Floats], paths: dict[str, Floats], guess: dict[str, Floats]
+) -> _Body:
+    """Offsets and marker places as their means over all frames, seen from the first guess of the axes."""
+    parents = _parents(joints)
+    offsets = np.zeros((len(joints), 3))
+    for index, parent in enumerate(parents):
+        if parent >= 0:
+            joint, above = joints[index], joints[parent]
+            offsets[index] = _seen_from(centres[joint], centres[above], guess[above])
+    markers = tuple(_markers_of(joint, paths, joints) for joint in joints)
+    local = tuple(
+        np.array([_seen_from(paths[place], centres[joint], guess[joint]) for place in own]).reshape(-1, 3)
+        for joint, own in zip(joints, markers, strict=True)
+    )
+    return _Body(joints, parents, offsets, markers, local)
+
+
+def _seen_from(points: Floats, origin: Floats, axes: Floats) -> Floats:
+    """(3,) m: mean over frames of a point in moving axes."""
+    return np.asarray(np.mean(np.einsum("tji,tj->ti", axes, points - origin), axis=0))
+
+
+def _markers_of(joint: str, paths: dict[str, Floats], joints: tuple[str, ...]) -> tuple[str, ...]:
+    if joint == "hips":
+        own: tuple[str, ...] = ("left_asis", "right_asis", "left_psis", "right_psis", "sacrum")
+    elif joint == "spine":
+        own = ("c7", "t10", "jugular", "xiphoid")
+    elif joint == "neck":
+        own = ("left_front_head", "right_front_head", "left_back_head", "right_back_head")
+        own = own if "head" in joints else ()
+    else:
+        side = next((side for side in ("left", "right") if joint.startswith(side)), "")
+        own = tuple(f"{side}_{place}" for place in CARRIED.get(joint.removeprefix(side), ()))
+    return tuple(place for place in own if place in paths)
+
+
+def _solve(
+    body: _Body, raw: dict[str, Floats], centres: dict[str, Floats], guess: dict[str, Floats]
+) -> tuple[Floats, Floats]:
+    """World rotations (T, J, 3, 3) and the root's path (T, 3) m."""
+    rotations = np.stack([guess[joint] for joint in body.joints], axis=1)
+    root = np.array(centres["hips"])
+    targets = [np.stack([raw[place] for place in own], axis=1) if own else None for own in body.markers]
+    places = _places(body, rotations, root)
+    for _ in range(SWEEPS):
+        for joint in reversed(range(len(body.joints))):
+            rotations[:, joint] = _best_rotation(body, joint, rotations, places, targets, centres, guess)
+            places = _places(body, rotations, root)
+        pull, weight = _pulls(body, 0, rotations, places, targets, centres)
+        root = root + pull / np.maximum(weight, 1e-9)[:, None]
+        before, places = places, _places(body, rotations, root)
+        if np.max(np.abs(places - before)) < STILL:
+            break
+    return rotations, root
+
+
+def _places(body: _Body, rotations: Floats, root: Floats) -> Floats:
+    """(T, J, 3) m: joints by forward kinematics."""
+    places = np.empty((len(root), len(body.joints), 3))
+    for joint, parent in enumerate(body.parents):
+        places[:, joint] = root if parent < 0 else places[:, parent] + rotations[:, parent] @ body.offsets[joint]
+    return places
+
+
+def _own_residuals(
+    body: _Body, joint: int, rotations: Floats, places: Floats, targets: list[Floats | None], centres: dict[str, Floats]
+) -> tuple[Floats, Floats]:
+    """Sum (T, 3) of target minus place over a joint's own markers and its centre, and the sum (T,) of weights."""
+    pull = CENTRE_WEIGHT * (centres[body.joints[joint]] - places[:, joint])
+    weight = np.full(len(pull), CENTRE_WEIGHT)
+    target = targets[joint]
+    if target is not None:
+        there = places[:, joint, None] + np.einsum("tij,mj->tmi", rotations[:, joint], body.local[joint])
+        seen = np.asarray(np.all(np.isfinite(target), axis=-1))
+        pull = pull + np.sum(np.where(seen[..., None], target - there, 0.0), axis=1)
+        weight = weight + seen.sum(axis=1)
+    return pull, weight
+
+
+def _pulls(
+    body: _Body, joint: int, rotations: Floats, places: Floats, targets: list[Floats | None], centres: dict[str, Floats]
+) -> tuple[Floats, Floats]:
+    """The same over a joint and all that hangs on it."""
+    pull, weight = _own_residuals(body, joint, rotations, places, targets, centres)
+    for child, parent in enumerate(body.parents):
+        if parent == joint:
+            more, heavier = _pulls(body, child, rotations, places, targets, centres)
+            pull, weight = pull + more, weight + heavier
+    return pull, weight
+
+
+def _best_rotation(
+    body: _Body,
+    joint: int,
+    rotations: Floats,
+    places: Floats,
+    targets: list[Floats | None],
+    centres: dict[str, Floats],
+    guess: dict[str, Floats],
+) -> Floats:
+    """(T, 3, 3): the rotation of one joint that fits its markers and carries its children best."""
+    covariance = HOLD * guess[body.joints[joint]]
+    target = targets[joint]
+    if target is not None:
+        seen = np.asarray(np.all(np.isfinite(target), axis=-1))
+        arms = np.where(seen[..., None], target - places[:, joint, None], 0.0)
+        covariance = covariance + np.einsum("tmi,mj->tij", arms, body.local[joint])
+    for child, parent in enumerate(body.parents):
+        if parent == joint:
+            pull, weight = _pulls(body, child, rotations, places, targets, centres)
+            arm = weight[:, None] * (places[:, child] - places[:, joint]) + pull
+            covariance = covariance + arm[:, :, None] * body.offsets[child]
+    return _nearest_rotation(covariance)
+
+
+def _clip(recording: MarkerRecording, body: _Body, rotations: Floats, root: Floats) -> Clip:
+    world = from_matrix(rotations)
+    local = np.array(world)
+    for joint, parent in enumerate(body.parents):
+        if parent >= 0:
+            local[:, joint] = multiply(inverse(world[:, parent]), world[:, joint])
+    translations = np.repeat(body.offsets[None], len(root), axis=0)
+    translations[:, 0] = root
+    return Clip(
+        name=recording.name,
+        joints=body.joints,
+        parents=body.parents,
+        offsets=body.offsets,
+        translations=translations,
+        rotations=continuous(local),
+        rate=recording.rate,
+        roles={joint: index for index, joint in enumerate(body.joints)},
+        source=replace(recording.source, names="markers"),
+        warnings=recording.warnings,
+        events=recording.events,
+        subject=recording.subject,
+    )
+
+
+def _judged(
+    clip: Clip, body: _Body, raw: dict[str, Floats], centres: dict[str, Floats], rotations: Floats, root: Floats
+) -> MarkerFit:
+    places = _places(body, rotations, root)
+    squares: dict[str, Floats] = {}
+    for joint, own in enumerate(body.markers):
+        for place, local in zip(own, body.local[joint], strict=True):
+            there = places[:, joint] + rotations[:, joint] @ local
+            distance = np.sum((raw[place] - there) ** 2, axis=-1)
+            squares[place] = distance[np.isfinite(distance)]
+    return MarkerFit(
+        clip=clip,
+        residual=float(np.sqrt(np.mean(np.concatenate(list(squares.values()))))),
+        marker_residuals={place: float(np.sqrt(np.mean(s))) for place, s in squares.items()},
+        centre_distances={
+            joint: float(np.linalg.norm(centres[joint] - places[:, index], axis=-1).max())
+            for index, joint in enumerate(body.joints)
+        },
+    )

@@ -1,0 +1,259 @@
+"""Puts a walk of the gait model on a skeleton: directions kept, feet on the ground, the hips where the legs carry them.
+
+World rotations are kept (not local ones), each limb bone after aligning its rest direction with the model's, so that
+another rest pose or proportion does not change where limbs point (characters notes, section 3.3). The height and the
+fore-aft place of the hips are not taken from the model: they follow from the standing leg, whose captured angles put
+the hips over a foot that rolls on the ground. Knows curves and one skeleton; no blend tree, no actor.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from stimuli import contact
+from stimuli.blend import FOOT_CHANNELS, UPPER, WalkCycle
+from stimuli.contact import Sole
+from stimuli.gait_model import MODEL_ARM, basis, curves
+from stimuli.kinematics import rotation_matrices
+from stimuli.legs import Leg, reach
+from stimuli.rotations import from_exponential, inverse, multiply, shortest_arc
+from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
+
+SAMPLES = 256
+PHASES = np.arange(SAMPLES) / SAMPLES
+
+MIRRORED_FOOT = np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0])
+"""Sign of each of the FOOT_CHANNELS for the other side."""
+
+BUILT_REACH = 0.9992
+"""Largest hip-ankle distance over leg length in a cycle as built (a knee bent by 4.6 degrees); blending needs the rest."""
+
+SWING_GAIN = (0.8, 1.35)
+"""How much less or more than captured the stance leg may swing to make a step of the wanted length."""
+
+LEAST_CLEARANCE = 0.012
+"""m, clearance of the lowest point at mid swing (Winter 1992: 1.3 cm on average)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """A skeleton with what retargeting needs to know of it."""
+
+    skeleton: Skeleton
+
+    @cached_property
+    def sole(self) -> Sole:
+        return Sole.of(self.skeleton)
+
+    @cached_property
+    def legs(self) -> tuple[Leg, Leg]:
+        """Left and right leg."""
+        return Leg.of(self.skeleton, "left"), Leg.of(self.skeleton, "right")
+
+    @property
+    def leg_length(self) -> float:
+        """m, hip to ankle, mean of both legs."""
+        return 0.5 * (self.legs[0].length + self.legs[1].length)
+
+
+def scaled(skeleton: Skeleton, factor: float) -> Skeleton:
+    """The same person, larger or smaller."""
+    return Skeleton(np.asarray(skeleton.offsets, dtype=float) * factor)
+
+
+def walk_cycle(
+    figure: Figure, coefficients: Floats, stance: float, speed: float, step_frequency: float
+) -> WalkCycle:
+    """One cycle of a walk with these Fourier coefficients (S, C) at exactly this speed and step frequency.
+
+    stance: share of the cycle on each foot; speed m/s; step_frequency steps/min.
+    """
+    right = curves(coefficients, PHASES)
+    stride = 120.0 * speed / step_frequency
+    rotations, hips_world = _upper_body(figure, coefficients)
+    foot = _Foot.of(figure, right, stance)
+    hip = rotation_matrices(hips_world) @ figure.legs[1].hip
+    hip[:, 0] += figure.leg_length * right["hips_shift"]  # right hip joint, less the height and advance of the hips
+    vector = _leg_vector(figure.legs[1], right["thigh"], right["shank"], foot.ankle[:, 0] - hip[:, 0])
+    advance, ahead, vector = _advance(vector, hip, foot, stride)
+    height = _height(figure.legs[1].length, vector, hip, foot, ahead - stride * PHASES - advance)
+    hips = np.column_stack([figure.leg_length * right["hips_shift"], height, advance])
+    carried = np.column_stack([height, advance]) + hip[:, 1:] + vector  # ankle (up, forward) if the leg had its way
+    joint = np.column_stack([hip[:, 0], height + hip[:, 1], advance + hip[:, 2]])
+    feet = _foot_channels(foot, carried, stride, ahead, joint, BUILT_REACH * figure.legs[1].length)
+    return WalkCycle(
+        speed, step_frequency, hips, rotations,
+        np.array([feet * MIRRORED_FOOT, feet]), np.array([stance, stance]), np.array([ahead, ahead]),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Foot:
+    """The right foot over PHASES, as it would roll on the ground at the place of its footprint.
+
+    pitch: wanted; yaw, knee_yaw: rad; side: m; ankle: (N, 3) m from the footprint's forward place
+    """
+
+    stance: float
+    pitch: Floats
+    yaw: Floats
+    knee_yaw: Floats
+    side: Floats
+    ankle: Floats
+
+    @classmethod
+    def of(cls, figure: Figure, right: dict[str, Floats], stance: float) -> _Foot:
+        pitch = contact.wanted_pitch(right["foot"])
+        drawn = contact.flattened(pitch)
+        swing = contact.swing_progress(contact.clock(PHASES, stance))
+        forward, up = contact.planted(figure.sole, drawn, contact.toe_bend(drawn, swing))
+        yaw = _still_in_stance(right["foot_yaw"], stance)
+        side = figure.leg_length * _still_in_stance(right["foot_shift"], stance)
+        ankle = np.column_stack([side + np.sin(yaw) * forward, up, np.cos(yaw) * forward])
+        return cls(stance, pitch, yaw, right["knee_yaw"], side, ankle)
+
+
+def _upper_body(figure: Figure, coefficients: Floats) -> tuple[Floats, Floats]:
+    """Local rotations (N, 13, 4) of the UPPER joints, and the world rotation (N, 4) of the hips."""
+    offsets = figure.skeleton.offsets
+    right, left = curves(coefficients, PHASES), curves(coefficients, PHASES + 0.5)
+
+    def turned(of: dict[str, Floats], segment: str, mirror: bool = False) -> Floats:
+        vector = np.stack([of[f"{segment}_{axis}"] for axis in "xyz"], axis=1)
+        return from_exponential(vector * (1.0, -1.0, -1.0) if mirror else vector)
+
+    world = {segment: turned(right, segment) for segment in ("hips", "spine", "chest", "neck", "head")}
+    for side, of, mirror, sign in (("right", right, False, -1.0), ("left", left, True, 1.0)):
+        world[f"{side}Shoulder"] = turned(of, "shoulder", mirror)
+        for joint, end, segment in (
+            ("UpperArm", "LowerArm", "upperArm"), ("LowerArm", "Hand", "lowerArm"), ("Hand", "Hand", "hand")
+        ):
+            aligned = shortest_arc(offsets[JOINTS.index(side + end)], MODEL_ARM * (sign, 1.0, 1.0))
+            world[side + joint] = multiply(turned(of, segment, mirror), aligned)
+    local = [world["hips"]]
+    for joint in UPPER[1:]:
+        local.append(multiply(inverse(world[JOINTS[PARENTS[JOINTS.index(joint)]]]), world[joint]))
+    return np.stack(local, axis=1), world["hips"]
+
+
+def _leg_vector(leg: Leg, thigh: Floats, shank: Floats, sideways: Floats) -> Floats:
+    """(N, 2) m up and forward from hip to ankle, for inclinations of its bones (rad).
+
+    The knee angle is kept, so the part of the leg's length that leads sideways is taken off.
+    """
+    vector = np.column_stack([
+        -leg.thigh * np.cos(thigh) - leg.shank * np.cos(shank),
+        leg.thigh * np.sin(thigh) + leg.shank * np.sin(shank),
+    ])
+    length = reach(leg, thigh - shank)
+    return vector * (np.sqrt(length**2 - sideways**2) / np.linalg.norm(vector, axis=1))[:, None]
+
+
+def _advance(vector: Floats, hip: Floats, foot: _Foot, stride: float) -> tuple[Floats, float, Floats]:
+    """Advance (N,) m of the hips, footprint ahead at heel strike (m), and the leg's vector swung to fit the step.
+
+    Least squares over the stance leg: the hips are where the leg puts them over its footprint, in the harmonics of
+    the step. A step longer than the captured angles make is made by swinging the whole leg further in proportion,
+    which keeps the knee.
+    """
+    root = np.sqrt(_standing_weight(foot.stance))
+    steps = _step_harmonics()[:, 1:]
+    wanted = foot.ankle[:, 2] - stride * PHASES - hip[:, 2]
+    design = np.column_stack([steps, -np.ones(SAMPLES), vector[:, 1]])
+    solution = np.linalg.lstsq(design * root[:, None], wanted * root, rcond=None)[0]
+    gain = float(np.clip(solution[-1], *SWING_GAIN))
+    solution = np.linalg.lstsq(design[:, :-1] * root[:, None], (wanted - gain * vector[:, 1]) * root, rcond=None)[0]
+    length = np.linalg.norm(vector, axis=1)
+    forward = np.clip(gain * vector[:, 1], -0.95 * length, 0.95 * length)
+    return steps @ solution[:-1], float(solution[-1]), np.column_stack([-np.sqrt(length**2 - forward**2), forward])
+
+
+def _height(leg_length: float, vector: Floats, hip: Floats, foot: _Foot, behind: Floats) -> Floats:
+    """Height (N,) m of the hips: least squares over the stance leg, lowered where the leg would not reach.
+
+    behind: (N,) m, from the hips' advance to the place of the footprint.
+    """
+    weight = _standing_weight(foot.stance)
+    steps = _step_harmonics()
+    wanted = foot.ankle[:, 1] - vector[:, 0] - hip[:, 1]
+    sideways = foot.ankle[:, 0] - hip[:, 0]
+    room = (BUILT_REACH * leg_length) ** 2 - sideways**2 - (behind + foot.ankle[:, 2] - hip[:, 2]) ** 2
+    ceiling = foot.ankle[:, 1] + np.sqrt(np.maximum(room, 1e-4)) - hip[:, 1]
+    standing = foot.stance > PHASES
+    force = np.zeros(SAMPLES)
+    for _ in range(12):
+        total = weight + force
+        target = (weight * wanted + force * (ceiling - 0.002)) / np.maximum(total, 1e-9)
+        root = np.sqrt(total)
+        height = steps @ np.linalg.lstsq(steps * root[:, None], target * root, rcond=None)[0]
+        over = standing & (height > ceiling)
+        if not over.any():
+            break
+        force = force + 4.0 * over
+    return np.asarray(height - max(0.0, float(np.max((height - ceiling)[standing]))))
+
+
+def _standing_weight(stance: float) -> Floats:
+    """(N,) how much the right leg carries: 1 in single support, passed on within double support."""
+    return np.asarray(contact.smooth_step(PHASES / 0.15) * contact.smooth_step((stance - PHASES) / 0.15))
+
+
+def _foot_channels(
+    foot: _Foot, carried: Floats, stride: float, ahead: float, hip: Floats, reach: float
+) -> Floats:
+    """(N, 6) FOOT_CHANNELS of the right foot on its own clock.
+
+    carried: (N, 2) m, up and forward: where the swinging leg carries the ankle; hip: (N, 3) m; reach: m.
+    """
+    swing = contact.swing_progress(PHASES)
+    phases = contact.phase_of(PHASES, foot.stance)
+
+    def on_clock(values: Floats) -> Floats:
+        return np.interp(phases, np.append(PHASES, 1.0), np.append(values, values[0]))
+
+    leave = contact.smooth_step(swing / 0.15) * contact.smooth_step((1.0 - swing) / 0.18)
+    least = LEAST_CLEARANCE * leave
+    clearance = least + leave * _soft_positive(on_clock(carried[:, 0] - foot.ankle[:, 1]) - least)
+
+    rolled = on_clock(foot.ankle[:, 2]) + ahead
+    course = contact.footprint_travel(phases, foot.stance)
+    travel = _swing_window(swing) * (on_clock((carried[:, 1] - foot.ankle[:, 2] - ahead) / stride) - course)
+    up = on_clock(foot.ankle[:, 1]) + clearance - on_clock(hip[:, 1])
+    sideways = on_clock(foot.ankle[:, 0] - hip[:, 0])
+    far = np.sqrt(np.maximum(reach**2 - up**2 - sideways**2, 0.0))
+    places = [(on_clock(hip[:, 2]) + sign * far - rolled) / stride - course for sign in (-1.0, 1.0)]
+    travel = np.where(swing > 0.0, np.clip(travel, *places), 0.0)
+    channels = {
+        "pitch": on_clock(foot.pitch),
+        "clearance": clearance,
+        "travel": travel,
+        "side": on_clock(foot.side),
+        "yaw": on_clock(foot.yaw),
+        "knee_yaw": on_clock(foot.knee_yaw),
+    }
+    return np.column_stack([channels[name] for name in FOOT_CHANNELS])
+
+
+def _step_harmonics() -> Floats:
+    """(N, 5): 1 and the first two harmonics of the step (the second and fourth of the cycle)."""
+    return basis(PHASES)[:, [0, 3, 4, 7, 8]]
+
+
+def _still_in_stance(values: Floats, stance: float) -> Floats:
+    """A curve (N,) made constant in stance (its mean over the flat foot) and itself in mid swing."""
+    still = float(np.mean(values[(PHASES > 0.1) & (PHASES < 0.4)]))
+    return still + (values - still) * _swing_window(contact.swing_progress(contact.clock(PHASES, stance)))
+
+
+def _swing_window(progress: Floats) -> Floats:
+    """0 in stance, 1 in mid swing, without a jump in velocity or acceleration."""
+    return np.asarray(contact.smooth_step(progress / 0.25) * contact.smooth_step((contact.ARRIVAL - progress) / 0.25))
+
+
+def _soft_positive(values: Floats, width: float = 0.004) -> Floats:
+    """values where well above 0, 0 well below, smooth between (m)."""
+    return np.asarray(width * np.logaddexp(0.0, values / width))
+

@@ -1,0 +1,197 @@
+"""From recorded runs to tables, figures and a report."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from analysis import AnalysisError, anova
+from analysis.journal import read_journal, read_study
+from analysis.plan import matching
+from analysis.planned import AnalysisOutcome, analyse
+from tests.analysis.recorded import PERCEIVED, journal_lines, study_text, write_run, write_study
+
+
+@pytest.fixture(scope="module")
+def analysed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, AnalysisOutcome]:
+    data = write_study(tmp_path_factory.mktemp("data") / "walk_ratio", 12)
+    out = tmp_path_factory.mktemp("out")
+    return data, out, analyse(data, out)
+
+
+def test_every_file_is_written_and_named(analysed: tuple[Path, Path, AnalysisOutcome]) -> None:
+    _, out, outcome = analysed
+    names = {path.name for path in outcome.paths}
+    assert names == {path.name for path in out.iterdir()}
+    assert names >= {
+        "trials.csv", "cell_means.csv", "anova.csv", "posthoc.csv", "ttests.csv", "normality.csv",
+        "report.html",
+        "means_actor.png", "means_actor.svg", "interaction_actor_sex.svg", "interaction_actor_speed.png",
+    }  # fmt: skip
+
+
+def test_the_same_journals_give_the_same_bytes(analysed: tuple[Path, Path, AnalysisOutcome], tmp_path: Path) -> None:
+    data, out, _ = analysed
+    analyse(data, tmp_path)
+    for path in sorted(out.iterdir()):
+        assert path.read_bytes() == (tmp_path / path.name).read_bytes(), path.name
+
+
+def test_the_trials_table_is_tidy_and_leads_to_the_same_anova(
+    analysed: tuple[Path, Path, AnalysisOutcome],
+) -> None:
+    _, out, _ = analysed
+    with (out / "trials.csv").open(newline="", encoding="utf-8") as file:
+        assert next(csv.reader(file))[:11] == [
+            "study", "participant", "run", "age", "sex", "vision",
+            "trial", "block", "repetition", "actor", "speed",
+        ]  # fmt: skip
+    assert b"\r\n" in (out / "trials.csv").read_bytes()
+    trials = pd.read_csv(out / "trials.csv")
+    assert len(trials) == 12 * 96
+    mine = anova(trials, "walk_ratio", "participant", ["actor", "speed", "start"], "sex")
+    written = pd.read_csv(out / "anova.csv")
+    assert list(written["effect"]) == list(mine["effect"])
+    assert written["F"].to_numpy() == pytest.approx(mine["F"].to_numpy(), rel=1e-10)
+    assert written["sentence"][0].startswith("F(")
+
+
+def test_each_actors_mean_lies_where_its_participants_put_it(
+    analysed: tuple[Path, Path, AnalysisOutcome],
+) -> None:
+    _, out, _ = analysed
+    tests = pd.read_csv(out / "ttests.csv").set_index("level")
+    for actor, (mean, sd) in PERCEIVED.items():
+        assert abs(tests.loc[actor, "mean"] - mean) < 3 * sd / 12**0.5
+    assert tests.loc["F1", "p"] < 0.05
+
+
+def test_the_report_stands_alone_and_says_that_nobody_was_there(
+    analysed: tuple[Path, Path, AnalysisOutcome],
+) -> None:
+    _, out, outcome = analysed
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "http" not in page.replace("http-equiv", "")
+    assert "<script" not in page
+    assert page.count("data:image/svg+xml;base64,") == 3
+    assert page.index("Simulated participants") < page.index("Results in short")
+    assert outcome.simulated
+    for sentence in outcome.headlines:
+        assert sentence.replace("<", "&lt;") in page
+    assert "SHA-256" in page
+    assert "@media print" in page
+
+
+def test_real_participants_are_not_called_simulated(tmp_path: Path) -> None:
+    write_study(tmp_path / "s", 5, simulated=False)
+    outcome = analyse(tmp_path / "s", tmp_path / "out")
+    assert not outcome.simulated
+    assert "imulated observers" not in outcome.report.read_text(encoding="utf-8")
+
+
+def test_text_from_journals_cannot_become_markup(tmp_path: Path) -> None:
+    evil = study_text().replace(
+        "title: Which walk looks most natural?", "title: \"<script>alert('x')</script> & $x^2$\""
+    )
+    for number in range(1, 5):
+        name = f"<b>{number}"
+        write_run(tmp_path / "s", f"P{number}", journal_lines(name, number, evil))
+    page = analyse(tmp_path / "s", tmp_path / "out").report.read_text(encoding="utf-8")
+    assert "<script" not in page
+    assert "&lt;script&gt;" in page
+
+
+@pytest.mark.parametrize("participants", [1, 2])
+def test_too_few_participants_still_get_their_tables(tmp_path: Path, participants: int) -> None:
+    write_study(tmp_path / "s", participants)
+    outcome = analyse(tmp_path / "s", tmp_path / "out")
+    assert len(pd.read_csv(tmp_path / "out" / "trials.csv")) == 96 * participants
+    assert len(pd.read_csv(tmp_path / "out" / "cell_means.csv")) == 24 * participants
+    assert any("analysis of variance cannot be run" in warning for warning in outcome.warnings)
+    assert "cannot be run" in outcome.report.read_text(encoding="utf-8")
+
+
+def test_unfinished_declined_and_withdrawn_runs_are_left_out_and_named(tmp_path: Path) -> None:
+    folder = write_study(tmp_path / "s", 4)
+    write_run(folder, "P05", journal_lines("P05", 5, reason=None, trials=30))
+    write_run(folder, "P06", journal_lines("P06", 6, reason="withdrawn"))
+    write_run(folder, "P07", journal_lines("P07", 7, reason="declined", trials=0))
+    outcome = analyse(folder, tmp_path / "out")
+    said = " ".join(outcome.warnings)
+    assert "P05: unfinished run (30 trials" in said
+    assert "P06: withdrew" in said
+    assert outcome.participants == 4
+    assert set(pd.read_csv(tmp_path / "out" / "trials.csv")["participant"]) == {"P01", "P02", "P03", "P04"}
+
+
+def test_an_answer_outside_the_groups_leaves_the_participant_out_of_the_anova(tmp_path: Path) -> None:
+    folder = write_study(tmp_path / "s", 5)
+    write_run(folder, "P06", journal_lines("P06", 6, sex="not_said"))
+    outcome = analyse(folder, tmp_path / "out")
+    assert any("P06 (not_said)" in warning for warning in outcome.warnings)
+    assert "rests on 5 of them" in outcome.report.read_text(encoding="utf-8")
+
+
+def test_a_torn_last_line_is_skipped_and_reported(tmp_path: Path) -> None:
+    lines = journal_lines("P01", 1)
+    path = write_run(tmp_path, "P01", lines)
+    path.write_bytes(path.read_bytes()[:-40])
+    run = read_journal(path)
+    assert run.torn
+    assert not run.finished
+    assert len(run.trials) == 96
+
+
+def test_a_damaged_inner_line_is_an_error_with_file_and_line(tmp_path: Path) -> None:
+    folder = write_study(tmp_path / "s", 3)
+    path = folder / "sourcedata" / "sub-P02" / "run-1" / "journal.jsonl"
+    path.write_text(path.read_text(encoding="utf-8").replace('"number":7,', '"number":8,', 1), encoding="utf-8")
+    with pytest.raises(AnalysisError, match=r"sub-P02/run-1/journal.jsonl, line \d+ of \d+"):
+        analyse(folder, tmp_path / "out")
+
+
+def test_a_trial_recorded_twice_counts_once(tmp_path: Path) -> None:
+    lines = journal_lines("P01", 1)
+    path = write_run(tmp_path, "P01", [*lines[:-1], lines[10], lines[-1]])
+    run = read_journal(path)
+    assert len(run.trials) == 96
+    assert len(run.repeated) == 1
+    assert any("more than once" in warning for warning in read_study(tmp_path).warnings)
+
+
+def test_declared_exclusions_are_applied_and_reported_with_their_reason(tmp_path: Path) -> None:
+    text = study_text().replace("exclusions: []", "exclusions: [{where: response_time > 15, reason: looked away}]")
+    folder = write_study(tmp_path / "s", 6, text)
+    analyse(folder, tmp_path / "out")
+    trials = pd.read_csv(tmp_path / "out" / "trials.csv", keep_default_na=False)
+    assert ((trials["response_time"] > 15) == (trials["excluded"] == "looked away")).all()
+    assert (trials["excluded"] != "").any()
+    assert "looked away" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_condition_that_cannot_be_read_names_the_columns() -> None:
+    trials = pd.DataFrame({"late_frames": [0, 9], "actor": ["F1", "M1"]})
+    assert list(matching(trials, "late_frames > 5")) == [False, True]
+    assert list(matching(trials, "actor == F1 and late_frames <= 0")) == [True, False]
+    with pytest.raises(AnalysisError, match="late_frames"):
+        matching(trials, "__import__('os')")
+
+
+def test_missing_folders_and_empty_ones(tmp_path: Path) -> None:
+    with pytest.raises(AnalysisError, match="There is no folder"):
+        analyse(tmp_path / "nowhere", tmp_path / "out")
+    with pytest.raises(AnalysisError, match="holds no recorded run"):
+        analyse(tmp_path, tmp_path / "out")
+    write_run(tmp_path / "s", "P01", journal_lines("P01", 1, reason=None))
+    with pytest.raises(AnalysisError, match="none of the 1 recorded runs can be analysed"):
+        analyse(tmp_path / "s", tmp_path / "out")
+
+
+def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
+    folder = write_study(tmp_path / "s", 4)
+    (tmp_path / "out").write_text("a file, not a folder")
+    with pytest.raises(AnalysisError, match="cannot be written"):
+        analyse(folder, tmp_path / "out")

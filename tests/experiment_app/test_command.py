@@ -1,0 +1,131 @@
+"""The command: help everywhere, one sentence for every mistake, exit statuses 0, 1 and 2, never a traceback."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from experiment_app.command import app, run
+from tests.protocols.studies import changed
+
+COMMANDS = ("run", "check", "simulate", "analyse", "demo", "schema", "copy")
+
+
+def said(capfd) -> str:
+    captured = capfd.readouterr()
+    return captured.out + captured.err
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_has_help(name, capfd):
+    assert run([name, "--help"]) == 0
+    assert len(said(capfd)) > 200
+
+
+def test_the_commands_are_those_of_the_documentation():
+    assert {name for name in app if not name.startswith("-")} == set(COMMANDS)
+
+
+def test_check_accepts_the_shipped_study_and_counts_its_trials(capfd):
+    assert run(["check", "walk_ratio"]) == 0
+    text = said(capfd)
+    assert "96 trials" in text
+    assert "minutes" in text
+
+
+def test_check_draws_the_balance(tmp_path, capfd):
+    from PIL import Image
+
+    assert run(["check", "walk_ratio", "--picture", str(tmp_path / "balance.png")]) == 0
+    assert Image.open(tmp_path / "balance.png").size[0] > 1000
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("actor: [F1, F2, M1, M2] ", "actor: [F1, F2, M1, M99] ", "there is no actor M99"),
+        ("{actor: T2,", "{actor: T9,", "there is no actor T9"),
+        ("ground: open_ground", "ground: open_ground\n  body: womn", "did you mean woman?"),
+        ("[0.8, 1.0, 1.2]", "[0.2, 1.0, 2.9]", "2.9"),
+        ("rate: 10 ", "rte: 10 ", "did you mean rate?"),
+    ],
+)
+def test_check_refuses_a_wrong_study_with_its_place_and_status_2(tmp_path, capfd, old, new, says):
+    path = tmp_path / "mine.yaml"
+    text = changed((old, new)).replace("M2: 0.00700}", "M99: 0.00700}" if "M99" in new else "M2: 0.00700}")
+    path.write_text(text.replace("M2: {mean", "M99: {mean") if "M99" in new else text, encoding="utf-8")
+    assert run(["check", str(path)]) == 2
+    text = said(capfd)
+    assert says in text
+    assert "mine.yaml:" in text
+    assert "Traceback" not in text
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["check", "no_such_study"],
+        ["check"],
+        ["nonsense"],
+        ["run", "walk_ratio", "--participant", "../P1"],
+        ["run", "walk_ratio", "--participant", "P 1"],
+        ["run", "walk_ratio", "--participant", ""],
+        ["run", "walk_ratio"],
+        ["simulate", "walk_ratio", "--participants", "0"],
+        ["simulate", "walk_ratio", "--participants", "many"],
+    ],
+)
+def test_wrong_usage_is_status_2_and_a_sentence(arguments, capfd):
+    assert run(arguments) == 2
+    text = said(capfd)
+    assert text.strip()
+    assert "Traceback" not in text
+
+
+def test_no_display_is_a_sentence_with_the_way_out(tmp_path):
+    environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    done = subprocess.run(
+        [sys.executable, "-m", "experiment_app", "run", "walk_ratio", "--participant", "P01", "--data", str(tmp_path)],
+        env=environment, capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "no display was found" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not list(tmp_path.rglob("journal.jsonl"))
+
+
+def test_copy_makes_a_file_that_checks_and_never_overwrites(tmp_path, capfd):
+    path = tmp_path / "mine.yaml"
+    assert run(["copy", "walk_ratio", str(path)]) == 0
+    assert (tmp_path / "study.schema.json").exists()
+    assert run(["check", str(path)]) == 0
+    assert run(["copy", "walk_ratio", str(path)]) == 2
+
+
+def test_the_schema_in_the_repository_is_fresh(tmp_path, capfd):
+    assert run(["schema", "--out", str(tmp_path / "s.json")]) == 0
+    shipped = Path(__file__).parents[2] / "protocols" / "studies" / "study.schema.json"
+    assert json.loads((tmp_path / "s.json").read_text()) == json.loads(shipped.read_text())
+
+
+def test_simulate_then_analyse_writes_tables_figures_and_report(tmp_path, capfd):
+    assert run(["simulate", "walk_ratio", "--participants", "6", "--data", str(tmp_path / "data")]) == 0
+    assert run(["analyse", str(tmp_path / "data" / "walk_ratio"), "--out", str(tmp_path / "report")]) == 0
+    names = {p.name for p in (tmp_path / "report").iterdir()}
+    assert {"trials.csv", "anova.csv", "posthoc.csv", "ttests.csv", "normality.csv", "report.html"} <= names
+
+
+def test_analysing_nothing_is_a_sentence(tmp_path, capfd):
+    assert run(["analyse", str(tmp_path), "--out", str(tmp_path / "report")]) in (1, 2)
+    assert "Traceback" not in said(capfd)
+
+
+def test_help_does_not_import_the_heavy_rooms():
+    code = "import sys, experiment_app.command; print([m for m in ('pandas','moderngl','scipy','numpy') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stdout.strip() == "[]"

@@ -1,0 +1,183 @@
+"""The journal: nothing acknowledged is lost, nothing is overwritten, a torn line is set aside and the run goes on."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from experiment_app.errors import RunError, UsageError
+from experiment_app.run_folder import journal_lines, participant_runs
+from protocols.design import conditions
+from tests.experiment_app.sessions import opened, play
+from tests.protocols.studies import short, shipped_text
+
+
+def trials(lines) -> list[int]:
+    return [line["number"] for line in lines if line["kind"] == "trial" and not line["practice"]]
+
+
+def test_a_run_leaves_a_header_every_answer_every_key_and_every_trial(tmp_path):
+    run = opened(tmp_path)
+    play(run)
+    lines, torn = journal_lines(run.run.journal)
+    kinds = Counter(line["kind"] for line in lines)
+    assert torn == 0
+    assert lines[0]["kind"] == "header"
+    assert lines[0]["study_text"] == short().text
+    assert (kinds["answer"], kinds["trial"], kinds["begin"]) == (3, 6, 6)
+    assert kinds["key"] >= 6 * 3
+    assert trials(lines) == [1, 2, 3, 4]
+
+
+def test_a_finished_participant_is_refused_and_a_second_run_stands_beside_the_first(tmp_path):
+    play(opened(tmp_path))
+    with pytest.raises(UsageError, match="P01 has already finished"):
+        opened(tmp_path)
+
+
+def test_a_second_process_on_the_same_run_is_refused(tmp_path):
+    first = opened(tmp_path)
+    with pytest.raises(UsageError, match="in use by another gaitlab"):
+        opened(tmp_path)
+    first.journal.close()
+
+
+def test_a_torn_last_line_is_set_aside_and_the_run_goes_on(tmp_path):
+    run = opened(tmp_path)
+    run.journal.close()
+    whole = run.run.journal.read_bytes()
+    run.run.journal.write_bytes(whole + b'{"kind":"consent","ti')
+    play(opened(tmp_path))
+    assert (run.run.folder / "journal.torn-1").read_bytes() == b'{"kind":"consent","ti'
+    lines, torn = journal_lines(run.run.journal)
+    assert torn == 0
+    assert [line["torn_bytes"] for line in lines if line["kind"] == "continue"] == [21]
+    assert trials(lines) == [1, 2, 3, 4]
+
+
+@pytest.mark.parametrize("cut", range(1, 60, 7))
+def test_a_journal_cut_anywhere_in_its_last_line_keeps_all_lines_before(tmp_path, cut):
+    run = opened(tmp_path)
+    play(run)
+    raw = run.run.journal.read_bytes()
+    before = journal_lines(run.run.journal)[0]
+    run.run.journal.write_bytes(raw[:-cut])
+    lines, torn = journal_lines(run.run.journal)
+    assert lines == before[: len(lines)]
+    assert len(lines) >= len(before) - 2
+    assert torn > 0 or raw[:-cut].endswith(b"\n")
+
+
+def test_a_damaged_line_in_the_middle_is_named(tmp_path):
+    run = opened(tmp_path)
+    play(run)
+    lines = run.run.journal.read_bytes().split(b"\n")
+    lines[4] = lines[4].replace(b"3", b"4", 1)
+    run.run.journal.write_bytes(b"\n".join(lines))
+    with pytest.raises(UsageError, match=r"journal.jsonl: line 5: the line does not match its checksum"):
+        journal_lines(run.run.journal)
+
+
+def test_a_full_disk_ends_the_run_with_a_sentence_and_keeps_what_was_written(tmp_path, monkeypatch):
+    run = opened(tmp_path)
+    real, left = os.fsync, [4]
+
+    def fsync(descriptor: int) -> None:
+        left[0] -= 1
+        if left[0] < 0:
+            raise OSError(28, "No space left on device")
+        real(descriptor)
+
+    monkeypatch.setattr(os, "fsync", fsync)
+    with pytest.raises(RunError, match="No space left on device"):
+        play(run)
+    monkeypatch.undo()
+    assert journal_lines(run.run.journal)[0][0]["kind"] == "header"
+    play(opened(tmp_path))
+    runs = participant_runs(tmp_path, "walk_ratio", "P01")
+    assert runs[-1].end == "finished"
+
+
+def test_a_data_folder_that_cannot_be_made_is_said_before_anything_starts(tmp_path):
+    (tmp_path / "walk_ratio").write_text("a file where a folder should be")
+    with pytest.raises(UsageError, match="cannot be made"):
+        opened(tmp_path)
+
+
+CHILD = """
+import sys
+from pathlib import Path
+from tests.experiment_app.sessions import opened, play
+from protocols.study_file import parse_study
+from experiment_app.windows import undrawn
+import os, time
+run = opened(Path(sys.argv[1]), study=parse_study("s.yaml", Path(sys.argv[2]).read_text()))
+acknowledged = open(sys.argv[3], "a")
+wait = run.journal.wait
+def said():
+    wait()
+    stage = run.journal.path.read_bytes().count(b'"kind":"trial"')
+    acknowledged.write(f"{stage}\\n"); acknowledged.flush()
+    time.sleep(0.002)
+run.journal.wait = said
+print("ready", flush=True)
+play(run)
+"""
+
+
+@pytest.mark.slow
+def test_kill_9_at_50_random_moments_loses_no_acknowledged_trial_and_doubles_none(tmp_path):
+    study = tmp_path / "study.yaml"
+    study.write_text(shipped_text(), encoding="utf-8")
+    rng, kills, participant_data = Random(50), 0, tmp_path / "data-0"
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    finished = 0
+    while kills < 50:
+        data = tmp_path / f"data-{finished}"
+        said = tmp_path / f"said-{finished}"
+        child = subprocess.Popen(
+            [sys.executable, "-c", CHILD, str(data), str(study), str(said)], stdout=subprocess.PIPE, env=environment
+        )
+        assert child.stdout is not None
+        child.stdout.readline()
+        time.sleep(rng.uniform(0.0, 0.12))
+        child.send_signal(signal.SIGKILL)
+        child.wait()
+        kills += 1
+        acknowledged = int(said.read_text().split("\n")[-2]) if said.exists() and said.read_text().count("\n") else 0
+        run = participant_runs(data, "walk_ratio", "P01")[-1]
+        recorded = [line for line in run.lines if line["kind"] == "trial"]
+        assert len(recorded) >= acknowledged
+        if run.end == "finished":
+            _every_cell_once(run.lines)
+            finished += 1
+    assert participant_data.exists()
+    last = opened(tmp_path / f"data-{finished}", study=short_of(study))
+    play(last)
+    _every_cell_once(journal_lines(last.run.journal)[0])
+
+
+def short_of(path: Path):
+    from protocols.study_file import read_study
+
+    return read_study(str(path))
+
+
+def _every_cell_once(lines) -> None:
+    """All 96 trials, each exactly once, every condition four times."""
+    numbers = trials(lines)
+    assert sorted(numbers) == list(range(1, 97))
+    cells = Counter(
+        tuple(line["factors"].values()) for line in lines if line["kind"] == "trial" and not line["practice"]
+    )
+    assert len(cells) == 24
+    assert set(cells.values()) == {4}
+    assert len(conditions(short().study)) == 4

@@ -1,0 +1,93 @@
+"""Simulated observers go through the same trials, loop and journal, and their preferences come back out."""
+
+from __future__ import annotations
+
+from statistics import mean
+
+import pytest
+
+from experiment_app.errors import UsageError
+from experiment_app.simulate import simulate
+from protocols.study_file import StudyFileError, parse_study, read_study
+from tests.experiment_app.sessions import opened, play
+from tests.protocols.studies import changed, shipped_text, short
+
+
+def responses(run, **levels):
+    from experiment_app.run_folder import journal_lines
+
+    return [
+        line["response"]["walk_ratio"]
+        for line in journal_lines(run.journal)[0]
+        if line["kind"] == "trial" and not line["practice"] and levels.items() <= line["factors"].items()
+    ]
+
+
+def test_the_same_seed_gives_the_same_journal_apart_from_the_start_time(tmp_path):
+    texts = []
+    for folder in ("a", "b"):
+        (run,) = simulate(short(), 1, tmp_path / folder, seed=5)
+        texts.append(run.journal.read_text(encoding="utf-8").split("\n")[1:])
+    assert texts[0] == texts[1]
+
+
+def test_observers_without_noise_answer_their_own_preference_to_half_a_percent(tmp_path):
+    text = shipped_text()
+    for sd in ("0.00065", "0.00062", "0.00051", "0.00058"):
+        text = text.replace(f"sd: {sd}", "sd: 0.0")
+    file = parse_study("s.yaml", text.replace("trial_noise: 0.0004", "trial_noise: 0.0"))
+    (run,) = simulate(file, 1, tmp_path)
+    # release slips by 15 ms at 10 steps/min per s: 0.15 steps/min of 100, so 0.3 % of a walk ratio
+    assert mean(responses(run, actor="F1")) == pytest.approx(0.00573, rel=0.005)
+    assert mean(responses(run, actor="M1")) == pytest.approx(0.00658, rel=0.005)
+
+
+def test_participants_fill_the_between_factor_in_turn(tmp_path):
+    from experiment_app.run_folder import journal_lines
+
+    answers = [
+        next(line["value"] for line in journal_lines(run.journal)[0] if line.get("question") == "sex")
+        for run in simulate(short(), 4, tmp_path)
+    ]
+    assert answers == ["female", "male", "female", "male"]
+
+
+def test_simulating_again_leaves_finished_participants_as_they_are(tmp_path):
+    first = [run.journal.read_bytes() for run in simulate(short(), 2, tmp_path)]
+    second = [run.journal.read_bytes() for run in simulate(short(), 3, tmp_path)]
+    assert second[:2] == first
+
+
+def test_simulated_participants_are_not_mixed_with_real_ones(tmp_path, monkeypatch):
+    import experiment_app.opening as opening
+
+    real = opening.open_new
+    run = real(short(), "P01", tmp_path, display={}, simulated=False)
+    play(run)
+    with pytest.raises(UsageError, match="holds real participants"):
+        list(simulate(short(), 1, tmp_path))
+
+
+def test_a_study_without_observers_says_what_to_add(tmp_path):
+    text = shipped_text()
+    file = parse_study("s.yaml", text[: text.index("# Simulated observers")])
+    with pytest.raises(StudyFileError, match=r"s.yaml:\d+:\d+: simulation: is missing; add simulation"):
+        list(simulate(file, 1, tmp_path))
+
+
+def test_anchoring_pulls_the_answer_towards_the_start(tmp_path):
+    text = changed(("trial_noise: 0.0004", "anchoring: 0.4\n  trial_noise: 0.0"))
+    (run,) = simulate(parse_study("s.yaml", text), 1, tmp_path)
+    assert mean(responses(run, start=80)) > mean(responses(run, start=120)) * 1.1
+
+
+def test_22_participants_of_96_trials_record_2112_trials(tmp_path):
+    runs = list(simulate(read_study("walk_ratio"), 22, tmp_path))
+    assert sum(len(responses(run)) for run in runs) == 2112
+
+
+def test_the_plan_and_its_order_depend_on_participant_and_seed_only(tmp_path):
+    a, b = opened(tmp_path / "a"), opened(tmp_path / "b")
+    assert a.plan == b.plan
+    a.journal.close()
+    b.journal.close()

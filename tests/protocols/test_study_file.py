@@ -1,0 +1,117 @@
+"""Study files: the shipped one is right, and every mistake is named with its place."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from protocols.consistency import inconsistencies
+from protocols.study_file import StudyFileError, find_study, parse_study, read_study, shipped_studies
+from tests.protocols.studies import changed, shipped_text
+
+
+def message(text: str) -> str:
+    """Every mistake found in a study text, "" when there is none."""
+    try:
+        file = parse_study("s.yaml", text)
+    except StudyFileError as error:
+        return str(error)
+    mistakes = inconsistencies(file.study)
+    return str(file.error(mistakes)) if mistakes else ""
+
+
+@pytest.mark.parametrize("name", shipped_studies())
+def test_every_shipped_study_is_consistent(name):
+    file = read_study(name)
+    assert inconsistencies(file.study) == []
+    assert file.study.study == name
+
+
+def place(text: str, sought: str) -> str:
+    """line:column of a text in a file, both from 1."""
+    assert text.count(sought) == 1, f"{sought!r} does not stand exactly once"
+    before = text[: text.index(sought)]
+    return f"{before.count(chr(10)) + 1}:{len(before) - before.rfind(chr(10))}"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "at", "says"),
+    [
+        ("repetitions: 4 ", "repetition: 4 ", "repetition: 4", "unknown key; did you mean repetitions?"),
+        ("order: random", "order: randm", "randm", "did you mean random?"),
+        ("rate: 10 ", "rate: brisk ", "brisk", "'brisk': must be a valid number"),
+        ("rate: 10 ", "rate: '10' ", "'10'", "must be a valid number"),
+        ("minimum_looking_time: 2 ", "minimum_looking_time: -1 ", "-1", "must be at least 0"),
+        ("start: $start", "start: $strat", "$strat", "did you mean $start?"),
+        ("[0.8, 1.0, 1.2]", "[0.8, slow, 1.2]", "slow, 1.2", "'slow' is not a number"),
+        ("[80, 120] ", "[70, 120] ", "70, 120", "70 is outside the range 80 to 120"),
+        ("sex: [female, male]", "sex: [female, mail]", "mail]", "did you mean male?"),
+        ("within: [actor, speed, start]", "within: [actor, sped, start]", "sped,", "did you mean speed?"),
+        ("M2: 0.00700}", "M3: 0.00700}", "M3:", "M3 is no level of actor"),
+        ("break: b,", "break: left,", "left, counter", "left is also the key for lower"),
+        ("confirm: enter", "confirm: escape", "escape", "escape is kept for the pause page"),
+        ("actor: [F1, F2, M1, M2] ", "actor: [F1, F1, M1, M2] ", "F1, M1, M2]", "level F1 stands twice"),
+        ("{actor: T1, speed: 1.0, start: 120}", "{actor: T1, start: 120}", "{actor: T1, start", "speed is missing"),
+        ("view: three_quarter", "view: sideways", "sideways", "allowed: three_quarter, side, front or legs"),
+        ("exclusions: [] ", "exclusions: [{where: lat > 5, reason: x}]", "lat > 5", "lat is no column"),
+        ("planned: 22", "planned: 22.5", "22.5", "22.5"),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_named_with_line_column_and_what_is_allowed(old, new, at, says):
+    text = changed((old, new))
+    said = message(text)
+    assert says in said
+    assert said.startswith(f"s.yaml:{place(text, at)}:"), (said, place(text, at))
+
+
+def test_all_mistakes_are_reported_at_once():
+    said = message(
+        changed(("rate: 10 ", "rate: brisk "), ("order: random", "order: randm"), ("planned: 22", "planed: 22"))
+    )
+    assert len(said.splitlines()) == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "s.yaml:1:1: the file is empty"),
+        ("study: a\n\ttitle: b\n", "s.yaml:2:1: a tab cannot"),
+        ("study: a\ntitle: b\nstudy: c\n", 's.yaml:3:1: found duplicate key "study"'),
+        ("study: [a\n", "s.yaml:2:1:"),
+        ("- a\n", "s.yaml:1:1: the file is"),
+        ("study: !!python/object/apply:os.system ['true']\n", "s.yaml:1:"),
+    ],
+)
+def test_broken_yaml_is_one_sentence_with_its_place(text, says):
+    assert message(text).startswith(says)
+
+
+def test_a_file_that_is_not_utf_8_is_refused_with_the_place_of_the_byte(tmp_path):
+    path = tmp_path / "latin.yaml"
+    path.write_bytes(b"study: a\ntitle: caf\xe9\n")
+    with pytest.raises(StudyFileError, match=r"latin.yaml:2:11: byte 0xe9 is not UTF-8"):
+        read_study(str(path))
+
+
+def test_an_unknown_study_names_the_shipped_ones():
+    with pytest.raises(FileNotFoundError, match=r"Did you mean walk_ratio\?"):
+        find_study("walk_ratoi")
+
+
+def test_yes_and_no_are_words_and_0_8_is_a_number():
+    file = parse_study("s.yaml", shipped_text())
+    assert "yes" in file.study.participants.questions[2].options  # type: ignore[union-attr]
+    assert file.study.factors["speed"] == [0.8, 1.0, 1.2]
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.data())
+def test_a_mutated_study_file_is_accepted_or_refused_with_a_place_and_never_breaks(data):
+    text = shipped_text()
+    for _ in range(data.draw(st.integers(1, 3))):
+        at = data.draw(st.integers(0, len(text) - 1))
+        length = data.draw(st.integers(0, 30))
+        text = text[:at] + data.draw(st.text(max_size=8)) + text[at + length :]
+    said = message(text)
+    assert said == "" or said.startswith("s.yaml:")

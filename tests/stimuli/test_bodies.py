@@ -1,0 +1,199 @@
+"""The woman and the man that come with gaitlab: what any experiment may rely on."""
+
+import time
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+from stimuli.bodies import BodyError, body_names, hair_names, load_body, scaled
+from stimuli.body_files.baked import read_baked
+from stimuli.skeleton import JOINTS, PARENTS
+from stimuli.skinning import skin
+
+NAMES = body_names()
+MIRROR = np.array([JOINTS.index(_other) for _other in (
+    n.replace("left", "right") if n.startswith("left") else n.replace("right", "left") for n in JOINTS
+)])
+
+
+def posed(body, **degrees):
+    """Skinning matrices of a body whose named joints are turned about X by so many degrees (positive: leg back)."""
+    rest = body.skeleton.positions
+    turned, placed = [], []
+    for joint, parent in enumerate(PARENTS):
+        a = np.radians(degrees.get(JOINTS[joint], 0))
+        local = np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]])
+        turned.append(local if parent < 0 else turned[parent] @ local)
+        offset = body.skeleton.offsets[joint]
+        placed.append(offset if parent < 0 else placed[parent] + turned[parent] @ offset)
+    return np.stack([np.column_stack([r, p - r @ q]) for r, p, q in zip(turned, placed, rest, strict=True)])
+
+
+def volume(positions, triangles):
+    a, b, c = (positions[triangles[:, i]] for i in range(3))
+    return float(np.sum(a * np.cross(b, c)) / 6)
+
+
+def surface(body, name, level=0):
+    return next(s for s in body.levels[level] if s.name == name)
+
+
+def welded(positions, triangles):
+    _, index = np.unique(np.round(positions, 6), axis=0, return_inverse=True)
+    return index.ravel()[triangles]
+
+
+def test_there_are_a_woman_and_a_man():
+    assert set(NAMES) == {"woman", "man"}
+
+
+def test_an_unknown_body_is_refused_with_the_known_names():
+    with pytest.raises(BodyError, match=r"there is no body 'robot'; known bodies are woman, man"):
+        load_body("robot")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_body_is_loaded_once(name):
+    assert load_body(name) is load_body(name)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_body_file_is_at_most_one_megabyte_and_reads_quickly(name):
+    data = files("stimuli").joinpath("data", "bodies", f"{name}.glb").read_bytes()
+    assert len(data) <= 1_000_000
+    start = time.perf_counter()
+    read_baked(data, name)
+    assert time.perf_counter() - start < 0.5  # 0.02 s on an idle core
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_levels_of_detail_keep_their_budgets(name):
+    counts = [sum(len(s.triangles) for s in level) for level in load_body(name).levels]
+    assert len(counts) == 3
+    assert 18_000 <= counts[0] <= 26_500
+    assert 5_000 <= counts[1] <= 8_600
+    assert 1_200 <= counts[2] <= 2_400
+
+
+@pytest.mark.parametrize(("name", "stature"), [("woman", 1.63), ("man", 1.75)])
+def test_the_body_stands_on_the_ground_facing_forwards_at_its_height(name, stature):
+    body = load_body(name)
+    assert body.stature == pytest.approx(stature, abs=0.005)
+    lowest = min(s.positions[:, 1].min() for s in body.levels[0])
+    assert lowest == pytest.approx(0, abs=0.002)
+    joints = dict(zip(JOINTS, body.skeleton.positions, strict=True))
+    assert joints["leftToes"][2] > joints["leftFoot"][2] + 0.08
+    assert joints["leftUpperArm"][0] > 0.1 > -0.1 > joints["rightUpperArm"][0]
+    arm = joints["leftHand"] - joints["leftUpperArm"]
+    assert np.degrees(np.arctan2(arm[0], -arm[1])) == pytest.approx(30, abs=0.5)
+
+
+def test_segment_lengths_are_near_winters_fractions_of_stature():
+    """Winter, Biomechanics and Motor Control of Human Movement: thigh .245, shank .246, forearm .146 of stature;
+    the upper arm is measured here from the joint's centre, 1.5 % of stature below the acromion."""
+    for name in NAMES:
+        body = load_body(name)
+        joints = dict(zip(JOINTS, body.skeleton.positions, strict=True))
+        bones = {
+            ("leftUpperLeg", "leftLowerLeg"): 0.245,
+            ("leftLowerLeg", "leftFoot"): 0.246,
+            ("leftUpperArm", "leftLowerArm"): 0.171,
+            ("leftLowerArm", "leftHand"): 0.146,
+        }
+        for (start, end), fraction in bones.items():
+            assert np.linalg.norm(joints[end] - joints[start]) / body.stature == pytest.approx(fraction, abs=0.018)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("level", [0, 1, 2])
+def test_every_array_is_usable(name, level):
+    for s in load_body(name).levels[level]:
+        count = len(s.positions)
+        assert s.normals.shape == (count, 3)
+        assert s.joints.shape == s.weights.shape == (count, 4)
+        assert s.triangles.min() >= 0
+        assert s.triangles.max() < count
+        assert np.allclose(s.weights.sum(axis=1), 1, atol=1e-9)
+        assert s.weights.min() >= 0
+        assert np.allclose(np.linalg.norm(s.normals, axis=1), 1, atol=1e-6)
+        assert s.occlusion.min() >= 0
+        assert s.occlusion.max() <= 1
+        assert np.all((s.colour >= 0) & (s.colour <= 1))
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("part", ["shirt", "trousers", "skin", "shoes", "soles"])
+def test_garments_skin_and_shoes_are_closed_surfaces(name, part):
+    s = surface(load_body(name), part)
+    t = welded(s.positions, s.triangles)
+    t = t[(t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 0] != t[:, 2])]
+    edges = np.sort(np.concatenate([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]]), axis=1)
+    _, times = np.unique(edges, axis=0, return_counts=True)
+    assert np.mean(times % 2 == 0) == 1.0
+    assert volume(s.positions, s.triangles) > 0
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_left_and_right_have_mirrored_weights(name):
+    s = surface(load_body(name), "shoes")
+    dense = np.zeros((len(s.positions), len(JOINTS)))
+    np.put_along_axis(dense, s.joints, s.weights, axis=1)
+    for row in range(4):  # joints with zero weight may repeat joint 0
+        dense[np.arange(len(dense)), s.joints[:, row]] = 0
+    for row in range(4):
+        np.add.at(dense, (np.arange(len(dense)), s.joints[:, row]), s.weights[:, row])
+    half = len(dense) // 2
+    assert np.allclose(s.positions[:half] * (-1, 1, 1), s.positions[half:], atol=1e-4)
+    assert np.allclose(dense[:half][:, MIRROR], dense[half:], atol=0.012)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_knee_bent_by_60_degrees_keeps_its_volume(name):
+    body = load_body(name)
+    s = surface(body, "trousers")
+    bent, _ = skin(s, posed(body, leftLowerLeg=60))
+    knee = body.skeleton.positions[JOINTS.index("leftLowerLeg")]
+    ring = s.positions[(np.abs(s.positions[:, 1] - knee[1]) < 0.03) & (s.positions[:, 0] > 0)]
+    around = np.ptp(ring[:, 0]) * np.ptp(ring[:, 2]) * np.pi / 4 * 0.20  # 20 cm of leg about the knee
+    loss = (volume(s.positions, s.triangles) - volume(bent, s.triangles)) / around
+    assert abs(loss) < 0.12
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_elbow_bent_by_90_degrees_keeps_its_volume(name):
+    body = load_body(name)
+    s = surface(body, "skin")
+    bent, _ = skin(s, posed(body, leftLowerArm=-90))
+    elbow = body.skeleton.positions[JOINTS.index("leftLowerArm")]
+    ring = s.positions[np.linalg.norm(s.positions - elbow, axis=1) < 0.055]
+    around = np.ptp(ring[:, 2]) ** 2 * np.pi / 4 * 0.16  # 16 cm of arm about the elbow
+    loss = (volume(s.positions, s.triangles) - volume(bent, s.triangles)) / around
+    assert abs(loss) < 0.15
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_there_are_two_haircuts_and_they_differ(name):
+    first, second = hair_names(name)
+    assert surface(load_body(name), "hair").positions.shape == surface(load_body(name, first), "hair").positions.shape
+    assert len(surface(load_body(name, first), "hair").positions) != len(
+        surface(load_body(name, second), "hair").positions
+    )
+    with pytest.raises(BodyError, match="there is no haircut 'mohawk'; known are"):
+        load_body(name, "mohawk")
+
+
+def test_scaling_is_uniform_and_moves_the_joints_too():
+    body = load_body("woman")
+    tall = scaled(body, 1.80)
+    factor = 1.80 / body.stature
+    assert tall.stature == 1.80
+    assert np.allclose(tall.skeleton.positions, factor * body.skeleton.positions)
+    assert np.allclose(tall.levels[0][0].positions, factor * body.levels[0][0].positions)
+    assert np.array_equal(tall.levels[0][0].normals, body.levels[0][0].normals)
+
+
+@pytest.mark.parametrize("stature", [0.2, 4.0, 175.0, float("nan")])
+def test_a_stature_that_is_no_persons_is_refused(stature):
+    with pytest.raises(BodyError, match="is it in metres"):
+        scaled(load_body("man"), stature)
