@@ -103,8 +103,9 @@ def _levene(means: CellMeans) -> list[dict[str, Any]]:
     for column, cell in enumerate(cells):
         parts = [means.values[groups == g, column] for g in range(groups.max() + 1)]
         for centre in ("mean", "median"):
-            spread = np.concatenate([np.abs(part - getattr(np, centre)(part)) for part in parts])
-            known = np.ptp(spread) > 0 and len(spread) > len(parts)
+            distances = [np.abs(part - getattr(np, centre)(part)) for part in parts]
+            spread = np.concatenate(distances)
+            known = any(np.ptp(group) > 1e-9 * spread.max() for group in distances)
             test = stats.levene(*parts, center=centre) if known else None
             rows.append({
                 "check": f"Levene ({centre})", "where": " × ".join(cell) or means.measure,

@@ -15,8 +15,8 @@ def jzs(t: float, df: float, effective_n: float, scale: float = DEFAULT_SCALE) -
     """
     if not (np.isfinite(t) and df > 0):
         return float("nan")
-    u, weight = np.polynomial.legendre.leggauss(600)
-    u, weight = 30 * u + 10, 30 * weight  # g from e^-20 to e^40
+    step = 0.02
+    u = np.arange(-20, 40, step)  # log g; equal steps converge fast where both ends have died away
     g = np.exp(u)
     log_integrand = (
         -0.5 * np.log1p(effective_n * scale**2 * g)
@@ -27,6 +27,6 @@ def jzs(t: float, df: float, effective_n: float, scale: float = DEFAULT_SCALE) -
         + u
     )
     peak = log_integrand.max()
-    log_marginal = peak + np.log(np.sum(weight * np.exp(log_integrand - peak)))
+    log_marginal = peak + np.log(step * np.sum(np.exp(log_integrand - peak)))
     log_bf = log_marginal + (df + 1) / 2 * np.log1p(t**2 / df)
     return float(np.exp(min(log_bf, 700.0)))

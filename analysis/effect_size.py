@@ -98,3 +98,8 @@ def _noncentral_t_cdf(t: float, df: float, delta: float) -> float:
 def hedges_factor(df: float) -> float:
     """J(df), which makes Cohen's d unbiased: Hedges 1981's exact gamma form, not 1 - 3/(4 df - 1)."""
     return float(np.exp(special.gammaln(df / 2) - special.gammaln((df - 1) / 2)) / np.sqrt(df / 2))
+
+
+def partial_eta_squared(F: float, df1: float, df2: float) -> float:
+    """SS / (SS + SS error), from a published F and its degrees of freedom (corrected or not: the same)."""
+    return F * df1 / (F * df1 + df2)

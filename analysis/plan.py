@@ -65,6 +65,7 @@ class AnalysisPlan:
     factors: tuple[str, ...] = field(default=())  # every within factor of the design
     repetitions: int = 1
     questions: tuple[str, ...] = field(default=())
+    start: str | None = None  # the factor that sets where an adjustment starts
 
 
 def read_plan(study_text: str, where: str) -> AnalysisPlan:
@@ -125,6 +126,7 @@ def plan_of(study: Mapping[str, Any], where: str = "study file") -> AnalysisPlan
         factors=tuple(factors),
         repetitions=int(study.get("repetitions", 1)),
         questions=tuple(questions),
+        start=_start_factor(study, factors),
     )
     used = {*plan.within, *plan.between, *(t.each for t in plan.t_tests), *(f.x for f in plan.figures)}
     unknown = sorted(used - set(plan.levels))
@@ -135,6 +137,12 @@ def plan_of(study: Mapping[str, Any], where: str = "study file") -> AnalysisPlan
             f"its factors are {listed(plan.levels)}."
         )
     return plan
+
+
+def _start_factor(study: Mapping[str, Any], factors: Mapping[str, Any]) -> str | None:
+    setting = (study.get("task") or {}).get("start")
+    name = setting[1:] if isinstance(setting, str) and setting.startswith("$") else None
+    return name if name in factors else None
 
 
 def _questions(questions: Any) -> dict[str, str]:

@@ -11,6 +11,7 @@ from analysis.apa import anova_sentence
 from analysis.errors import AnalysisError
 from analysis.figures import DrawnFigure, draw
 from analysis.journal import read_study
+from analysis.latex import latex_tables
 from analysis.plan import read_plan
 from analysis.report import report
 from analysis.results import PlannedResults, compute, headlines
@@ -38,7 +39,8 @@ def analyse(study_folder: Path, out: Path, unfinished: bool = False) -> Analysis
 
     study_folder: DATA/<study>, with one journal a run under sourcedata; unfinished: include runs that
     were not finished. Writes trials.csv, cell_means.csv, descriptives.csv, anova.csv, posthoc.csv,
-    ttests.csv, normality.csv, the planned figures (PNG and SVG) and report.html. What cannot be
+    ttests.csv, normality.csv, assumptions.csv, tables.tex, the planned figures (PNG and SVG) and
+    report.html. What cannot be
     computed (too few participants, say) is a warning; the tables of what was recorded are still
     written. The same journals give the same bytes. Raises AnalysisError for what a person must put right.
     """
@@ -59,7 +61,9 @@ def analyse(study_folder: Path, out: Path, unfinished: bool = False) -> Analysis
         *(f"{figure.name}.{kind}" for figure in drawn for kind in ("png", "svg")),
         "report.html",
     ]
+    names.insert(len(tables), "tables.tex")
     paths = [write_table(out / name, table) for name, table in tables.items()]
+    paths.append(write_bytes(out / "tables.tex", latex_tables(results).encode("utf-8")))
     for figure in drawn:
         paths.append(write_bytes(out / f"{figure.name}.png", figure.png))
         paths.append(write_bytes(out / f"{figure.name}.svg", figure.svg))
@@ -84,6 +88,7 @@ def _tables(results: PlannedResults) -> dict[str, pd.DataFrame]:
         "posthoc.csv": results.posthoc,
         "ttests.csv": results.ttests,
         "normality.csv": results.normality,
+        "assumptions.csv": results.assumptions,
     }
 
 

@@ -157,6 +157,7 @@ def _anova(results: PlannedResults) -> Markup:
         "corrected where the within-participant part has more than one df; F is the same either way.",
         report_text.sphericity_sentence(results),
         report_text.normality_sentence(results),
+        *report_text.other_checks(results),
         *results.notes,
     ]
     return join(

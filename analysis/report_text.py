@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from analysis.apa import p_value, share
+from analysis.apa import MINUS, degrees, number, p_value, share
 from analysis.errors import listed
 from analysis.results import ALPHA, PlannedResults
 
@@ -118,3 +118,31 @@ def normality_sentence(results: PlannedResults) -> str:
         f"{'has' if low == 1 else 'have'} p < .05; "
         f"about {max(1, round(tested * ALPHA))} would by chance alone."
     )
+
+
+def other_checks(results: PlannedResults) -> list[str]:
+    """Equal variances, outlying cells, learning and anchoring, a sentence each; all of it is in assumptions.csv."""
+    table, found = results.assumptions, []
+    levene = table[table["check"] == "Levene (median)"]
+    if len(levene):
+        low = levene[levene["p"] < ALPHA]
+        found.append(
+            f"Equal variances of the groups: Levene's test (from the median) has p < .05 in {len(low)} of "
+            f"{len(levene)} within-participant cells."
+        )
+    outliers = table.loc[table["check"] == "outlier", "where"]
+    found.append(
+        f"Outliers: {listed(outliers)} lie more than 3 standard deviations from the mean of their group and cell; "
+        "they were kept."
+        if len(outliers)
+        else "Outliers: no participant's cell mean lies more than 3 standard deviations from that of the group."
+    )
+    unit = f" {results.plan.unit}" if results.plan.unit else ""
+    for check, name in (("learning", "Learning"), ("anchoring", "Anchoring to the start value")):
+        for row in table[(table["check"] == check) & table["p"].notna()].to_dict("records"):
+            verdict = "found" if row["p"] < ALPHA else "not found"
+            found.append(
+                f"{name}: {verdict}, {row['note'].replace('-', MINUS)}{unit}, t({degrees(row['df2'])}) = "
+                f"{number(row['statistic'])}, {p_value(row['p'])}."
+            )
+    return found

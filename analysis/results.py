@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from analysis.apa import anova_sentence, effect_name, number, p_value, t_sentence
+from analysis.assumption_checks import assumptions
 from analysis.cells import CellMeans, cell_means
 from analysis.columns import numeric_label
 from analysis.comparisons import pairwise_of
@@ -44,6 +45,7 @@ class PlannedResults:
     posthoc: pd.DataFrame
     ttests: pd.DataFrame
     normality: pd.DataFrame
+    assumptions: pd.DataFrame
     warnings: tuple[str, ...]
     notes: tuple[str, ...] = field(default=())
 
@@ -74,6 +76,9 @@ def compute(recorded: RecordedStudy, plan: AnalysisPlan, trials: pd.DataFrame) -
         notes += [note for note in table.attrs["notes"] if note not in said]
         if plan.normality:
             normal = normality_of_cells(means)
+    checks = _attempt(said, "The assumption checks cannot be run", _checks, used, plan) if means is not None else None
+    if checks is None:
+        checks = pd.DataFrame(columns=["check", "where", "statistic", "df1", "df2", "p", "note"])
     posthoc = _posthoc(means, table, plan, notes)
     ttests = _t_tests(used, plan, said)
     if len(table) and any(":" in e for e in table.loc[table["p_gg"] < ALPHA, "effect"]):
@@ -83,7 +88,7 @@ def compute(recorded: RecordedStudy, plan: AnalysisPlan, trials: pd.DataFrame) -
             "read the cells of the interaction as well."
         )
     return PlannedResults(
-        plan, recorded, trials, cells, descriptives, means, table, posthoc, ttests, normal,
+        plan, recorded, trials, cells, descriptives, means, table, posthoc, ttests, normal, checks,
         tuple(dict.fromkeys(said)), tuple(dict.fromkeys(notes)),
     )  # fmt: skip
 
@@ -96,6 +101,13 @@ def _attempt(said: list[str], what: str, function, *arguments):  # type: ignore[
         except AnalysisError as error:
             said.append(f"{what}: {error}")
             return None
+
+
+def _checks(used: pd.DataFrame, plan: AnalysisPlan) -> pd.DataFrame:
+    return assumptions(
+        used, plan.measure, "participant", plan.within, plan.between,
+        trial="trial", start=plan.start if plan.start in plan.within else None, levels=plan.levels,
+    )  # fmt: skip
 
 
 def _cell_means(used: pd.DataFrame, plan: AnalysisPlan) -> CellMeans:

@@ -75,7 +75,8 @@ def run_study(
     participant: Annotated[str, Parameter(help="The participant's ID: letters and digits, as P01.")],
     data: Data = Path("data"),
     window: Annotated[bool, Parameter(negative="", help="In a window instead of full screen.")] = False,
-    display: Annotated[int, Parameter(help="Number of the display for full screen, from 1.")] = 1,
+    size: Annotated[str, Parameter(help="Size of the window.")] = "1280x720",
+    display: Annotated[int, Parameter(help="Number of the display, from 1.")] = 1,
     refresh: Annotated[
         float, Parameter(help="Refresh rate in Hz, where the display reports none or a wrong one.")
     ] = 0.0,
@@ -94,7 +95,7 @@ def run_study(
     from experiment_app.live import run_live
 
     return run_live(
-        study, participant, data, full_screen=not window, display=display, refresh=refresh, seed=seed,
+        study, participant, data, full_screen=not window, size=_size(size), display=display, refresh=refresh, seed=seed,
         new_run=new_run, resume=resume, ask=_ask, say=_say,
     )  # fmt: skip
 
@@ -214,6 +215,14 @@ def copy(
         beside.write_text(schema_text(), encoding="utf-8")
     out.print(f"Copied to {path}. Edit it, then: gaitlab check {path}", markup=False)
     return 0
+
+
+def _size(text: str) -> tuple[int, int]:
+    """Width and height from a text such as 1280x720; raises UsageError."""
+    width, _, height = text.partition("x")
+    if not (width.isdecimal() and height.isdecimal() and 320 <= int(width) <= 16384 and 200 <= int(height) <= 16384):
+        raise UsageError(f"--size {text}: write width x height in pixels, at least 320x200, as 1280x720.")
+    return int(width), int(height)
 
 
 def _say(sentence: str) -> None:

@@ -113,7 +113,7 @@ def _take_part(folder: Path, say: Callable[[str], None]) -> None:
     file.write_text(short_study().text, encoding="utf-8")
     try:
         run_live(
-            str(file), "YOU", folder / "your-data", full_screen=False, display=1, refresh=0.0, seed=None,
+            str(file), "YOU", folder / "your-data", full_screen=False, size=(1280, 720), display=1, refresh=0.0, seed=None,
             new_run=False, resume="no", ask=lambda _: False, say=say,
         )  # fmt: skip
     except RunError as error:

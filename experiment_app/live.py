@@ -30,6 +30,7 @@ def run_live(
     data: Path,
     *,
     full_screen: bool,
+    size: tuple[int, int],
     display: int,
     refresh: float,
     seed: int | None,
@@ -45,7 +46,9 @@ def run_live(
     old = None if new_run else unfinished_run(data, file.study.study, participant)
     if old is not None and not _continues(old, file, resume, ask, say):
         return 2
-    with DesktopWindow(title=file.study.title, full_screen=full_screen, display=display, refresh=refresh) as window:
+    with DesktopWindow(
+        title=file.study.title, full_screen=full_screen, size=size, display=display, refresh=refresh
+    ) as window:
         if old is not None:
             opened = open_unfinished(old, display=window.description())
         else:

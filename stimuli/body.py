@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from stimuli.skeleton import Floats, Skeleton
+
+Integers = NDArray[np.integer]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,9 +30,9 @@ class Surface:
     positions: Floats
     normals: Floats
     occlusion: Floats
-    joints: Floats
+    joints: Integers
     weights: Floats
-    triangles: Floats
+    triangles: Integers
 
 
 @dataclass(frozen=True, eq=False)

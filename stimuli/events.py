@@ -18,6 +18,7 @@ from scipy.signal import butter, find_peaks, sosfiltfilt
 
 from stimuli.clip import Clip, FootEvent, world_positions
 from stimuli.gait import Gait
+from stimuli.motion_files.errors import MotionFileError
 
 Floats = NDArray[np.floating]
 
@@ -37,7 +38,7 @@ PATH_CUTOFF = 2.0  # Hz, low-pass of the pelvis' path before its length is taken
 STILL = 0.25  # of foot swing: a pelvis that travels less per stride is on a treadmill
 
 
-class GaitError(ValueError):
+class GaitError(MotionFileError):
     """A motion holds no walk to measure; the message says what is missing."""
 
 

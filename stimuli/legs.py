@@ -13,8 +13,8 @@ import numpy as np
 
 from stimuli.skeleton import JOINTS, Floats, Skeleton
 
-STRAIGHTEST = 0.9997
-"""Largest hip-ankle distance over the leg's length: a knee bent by 2 degrees or more never snaps straight."""
+STRAIGHTEST = 0.99995
+"""Largest hip-ankle distance over the leg's length: a knee keeps a degree of bend and never snaps straight."""
 
 Vector = tuple[float, float, float]
 

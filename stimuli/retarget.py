@@ -28,11 +28,14 @@ PHASES = np.arange(SAMPLES) / SAMPLES
 MIRRORED_FOOT = np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0])
 """Sign of each of the FOOT_CHANNELS for the other side."""
 
-BUILT_REACH = 0.9992
-"""Largest hip-ankle distance over leg length in a cycle as built (a knee bent by 4.6 degrees); blending needs the rest."""
+BUILT_REACH = 0.9975
+"""Largest hip-ankle distance over leg length in a cycle as built (a knee bent by 2.3 degrees); blending needs the rest."""
 
 SWING_GAIN = (0.8, 1.35)
 """How much less or more than captured the stance leg may swing to make a step of the wanted length."""
+
+PUSH_OFF = np.radians(12.0)
+"""Largest change of the captured foot pitch at push-off (two standard deviations between people, S&M tables)."""
 
 LEAST_CLEARANCE = 0.012
 """m, clearance of the lowest point at mid swing (Winter 1992: 1.3 cm on average)."""
@@ -79,7 +82,9 @@ def walk_cycle(
     hip[:, 0] += figure.leg_length * right["hips_shift"]  # right hip joint, less the height and advance of the hips
     vector = _leg_vector(figure.legs[1], right["thigh"], right["shank"], foot.ankle[:, 0] - hip[:, 0])
     advance, ahead, vector = _advance(vector, hip, foot, stride)
-    height = _height(figure.legs[1].length, vector, hip, foot, ahead - stride * PHASES - advance)
+    behind = ahead - stride * PHASES - advance
+    height = _height(figure.legs[1].length, vector, hip, foot, behind, right["thigh"] - right["shank"])
+    foot = _pushed_off(figure.sole, foot, vector, height + hip[:, 1], behind - hip[:, 2], hip[:, 0])
     hips = np.column_stack([figure.leg_length * right["hips_shift"], height, advance])
     carried = np.column_stack([height, advance]) + hip[:, 1:] + vector  # ankle (up, forward) if the leg had its way
     joint = np.column_stack([hip[:, 0], height + hip[:, 1], advance + hip[:, 2]])
@@ -106,14 +111,42 @@ class _Foot:
 
     @classmethod
     def of(cls, figure: Figure, right: dict[str, Floats], stance: float) -> _Foot:
-        pitch = contact.wanted_pitch(right["foot"])
-        drawn = contact.flattened(pitch)
-        swing = contact.swing_progress(contact.clock(PHASES, stance))
-        forward, up = contact.planted(figure.sole, drawn, contact.toe_bend(drawn, swing))
         yaw = _still_in_stance(right["foot_yaw"], stance)
         side = figure.leg_length * _still_in_stance(right["foot_shift"], stance)
+        return cls.pitched(figure.sole, right["foot"], yaw, right["knee_yaw"], side, stance)
+
+    @classmethod
+    def pitched(
+        cls, sole: Sole, drawn: Floats, yaw: Floats, knee_yaw: Floats, side: Floats, stance: float
+    ) -> _Foot:
+        pitch = contact.wanted_pitch(drawn)
+        swing = contact.swing_progress(contact.clock(PHASES, stance))
+        forward, up = contact.planted(sole, drawn, contact.toe_bend(drawn, swing))
         ankle = np.column_stack([side + np.sin(yaw) * forward, up, np.cos(yaw) * forward])
-        return cls(stance, pitch, yaw, right["knee_yaw"], side, ankle)
+        return cls(stance, pitch, yaw, knee_yaw, side, ankle)
+
+
+def _pushed_off(sole: Sole, foot: _Foot, vector: Floats, hip_up: Floats, behind: Floats, aside: Floats) -> _Foot:
+    """The foot with its heel rise at push-off changed, by PUSH_OFF at most, so that the knee stays as captured.
+
+    In double support the hips go where the leading leg carries them; what is left over for the trailing leg is
+    made by its heel, which is what a trailing foot is for. hip_up, behind, aside: (N,) m, height of the hip joint,
+    footprint from the hip joint along the path, and the hip joint's sideways place.
+    """
+    drawn = contact.flattened(foot.pitch)
+    length = np.linalg.norm(vector, axis=1)
+    changes = np.linspace(-PUSH_OFF, PUSH_OFF, 41)
+    pitches = drawn[:, None] + changes
+    forward, up = contact.planted(sole, pitches, contact.toe_bend(pitches, 0.0))
+    reached = np.sqrt((up - hip_up[:, None]) ** 2 + (behind[:, None] + np.cos(foot.yaw)[:, None] * forward) ** 2)
+    best = changes[np.argmin((reached - length[:, None]) ** 2 + (0.02 * changes) ** 2, axis=1)]
+    late = contact.smooth_step((PHASES - 0.36) / 0.1) * contact.smooth_step((foot.stance + 0.1 - PHASES) / 0.1)
+    end = int(np.searchsorted(PHASES, foot.stance - 0.01))
+    held = np.where(PHASES < PHASES[end], best, best[end])
+    width = SAMPLES // 32
+    kernel = np.hanning(2 * width + 1) / np.hanning(2 * width + 1).sum()
+    smooth = np.convolve(np.pad(held, width, mode="edge"), kernel, mode="valid")
+    return _Foot.pitched(sole, drawn + late * smooth, foot.yaw, foot.knee_yaw, foot.side, foot.stance)
 
 
 def _upper_body(figure: Figure, coefficients: Floats) -> tuple[Floats, Floats]:
@@ -171,18 +204,21 @@ def _advance(vector: Floats, hip: Floats, foot: _Foot, stride: float) -> tuple[F
     return steps @ solution[:-1], float(solution[-1]), np.column_stack([-np.sqrt(length**2 - forward**2), forward])
 
 
-def _height(leg_length: float, vector: Floats, hip: Floats, foot: _Foot, behind: Floats) -> Floats:
+def _height(
+    leg_length: float, vector: Floats, hip: Floats, foot: _Foot, behind: Floats, knee: Floats
+) -> Floats:
     """Height (N,) m of the hips: least squares over the stance leg, lowered where the leg would not reach.
 
-    behind: (N,) m, from the hips' advance to the place of the footprint.
+    behind: (N,) m, from the hips' advance to the place of the footprint; knee: (N,) rad. The straighter the knee,
+    the more a millimetre of height bends it, and the more it counts.
     """
-    weight = _standing_weight(foot.stance)
+    weight = _standing_weight(foot.stance) / (np.maximum(knee, 0.0) + 0.05) ** 2 * np.where(PHASES < 0.1, 3.0, 1.0)
     steps = _step_harmonics()
     wanted = foot.ankle[:, 1] - vector[:, 0] - hip[:, 1]
     sideways = foot.ankle[:, 0] - hip[:, 0]
     room = (BUILT_REACH * leg_length) ** 2 - sideways**2 - (behind + foot.ankle[:, 2] - hip[:, 2]) ** 2
     ceiling = foot.ankle[:, 1] + np.sqrt(np.maximum(room, 1e-4)) - hip[:, 1]
-    standing = foot.stance > PHASES
+    standing = foot.stance - 0.17 > PHASES
     force = np.zeros(SAMPLES)
     for _ in range(12):
         total = weight + force
@@ -192,13 +228,13 @@ def _height(leg_length: float, vector: Floats, hip: Floats, foot: _Foot, behind:
         over = standing & (height > ceiling)
         if not over.any():
             break
-        force = force + 4.0 * over
+        force = force + 4.0 * weight.max() * over
     return np.asarray(height - max(0.0, float(np.max((height - ceiling)[standing]))))
 
 
 def _standing_weight(stance: float) -> Floats:
-    """(N,) how much the right leg carries: 1 in single support, passed on within double support."""
-    return np.asarray(contact.smooth_step(PHASES / 0.15) * contact.smooth_step((stance - PHASES) / 0.15))
+    """(N,) how much the right leg tells of the hips: all from heel strike until the other leg takes over."""
+    return np.asarray(contact.smooth_step((stance - 0.1 - PHASES) / 0.1))
 
 
 def _foot_channels(
@@ -214,8 +250,8 @@ def _foot_channels(
     def on_clock(values: Floats) -> Floats:
         return np.interp(phases, np.append(PHASES, 1.0), np.append(values, values[0]))
 
-    leave = contact.smooth_step(swing / 0.15) * contact.smooth_step((1.0 - swing) / 0.18)
-    least = LEAST_CLEARANCE * leave
+    leave = contact.smooth_step(swing / 0.1) * contact.smooth_step((1.0 - swing) / 0.18)
+    least = LEAST_CLEARANCE * contact.smooth_step(swing / 0.1) * contact.smooth_step((1.0 - swing) / 0.5)
     clearance = least + leave * _soft_positive(on_clock(carried[:, 0] - foot.ankle[:, 1]) - least)
 
     rolled = on_clock(foot.ankle[:, 2]) + ahead
@@ -238,8 +274,8 @@ def _foot_channels(
 
 
 def _step_harmonics() -> Floats:
-    """(N, 5): 1 and the first two harmonics of the step (the second and fourth of the cycle)."""
-    return basis(PHASES)[:, [0, 3, 4, 7, 8]]
+    """(N, 9): 1 and the first four harmonics of the step (even ones of the cycle)."""
+    return basis(PHASES)[:, [0, 3, 4, 7, 8, 11, 12, 15, 16]]
 
 
 def _still_in_stance(values: Floats, stance: float) -> Floats:
@@ -250,10 +286,10 @@ def _still_in_stance(values: Floats, stance: float) -> Floats:
 
 def _swing_window(progress: Floats) -> Floats:
     """0 in stance, 1 in mid swing, without a jump in velocity or acceleration."""
-    return np.asarray(contact.smooth_step(progress / 0.25) * contact.smooth_step((contact.ARRIVAL - progress) / 0.25))
+    return np.asarray(contact.smooth_step(progress / 0.12) * contact.smooth_step((contact.ARRIVAL - progress) / 0.25))
 
 
-def _soft_positive(values: Floats, width: float = 0.004) -> Floats:
+def _soft_positive(values: Floats, width: float = 0.002) -> Floats:
     """values where well above 0, 0 well below, smooth between (m)."""
     return np.asarray(width * np.logaddexp(0.0, values / width))
 

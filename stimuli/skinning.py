@@ -1,4 +1,4 @@
-"""Linear blend skinning in NumPy: the reference which the GPU's skinning is compared with. Knows no file and no clock."""
+"""Linear blend skinning in NumPy: the reference which the GPU's skinning is compared with. Knows no file."""
 
 from __future__ import annotations
 

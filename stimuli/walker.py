@@ -32,7 +32,7 @@ LEG_INDICES = np.array(
     [JOINTS.index(f"{side}{part}") for side in SIDES for part in ("UpperLeg", "LowerLeg", "Foot", "Toes")]
 )
 
-LOWERING_SOFTNESS = 0.001
+LOWERING_SOFTNESS = 0.0003
 """m, within which the hips give way before a leg is at its straightest."""
 
 

@@ -5,17 +5,19 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stimuli.body_files.container import Container
 from stimuli.body_files.errors import BodyError
-from stimuli.skeleton import Floats
+
+Array = NDArray[Any]
 
 _TYPES = {5120: np.int8, 5121: np.uint8, 5122: np.int16, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 _COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 MOST_ELEMENTS = 20_000_000
 
 
-def read_accessor(container: Container, index: Any, where: str) -> Floats:
+def read_accessor(container: Container, index: Any, where: str) -> Array:
     """(N, C) values of an accessor; normalised integers come back as fractions, other integers as they are."""
     accessor = item(container, "accessors", index, where)
     dtype, count, columns = _shape(accessor, where)
@@ -61,25 +63,27 @@ def _shape(accessor: dict[str, Any], where: str) -> tuple[np.dtype[Any], int, in
 
 def _view(
     container: Container, index: Any, start: int, dtype: np.dtype[Any], count: int, columns: int, where: str
-) -> Floats:
+) -> Array:
     view = item(container, "bufferViews", index, where)
-    if view.get("buffer", 0) != 0:
-        raise BodyError(f"{where}: a buffer view points to buffer {view.get('buffer')!r}, but a GLB file has one")
+    buffer = whole(view.get("buffer"), where, "a buffer view's buffer")
+    if buffer >= len(container.buffers):
+        raise BodyError(f"{where}: a buffer view points to buffer {buffer}, which does not exist")
+    data = container.buffers[buffer]
     offset = whole(view.get("byteOffset", 0), where, "byteOffset")
     length = whole(view.get("byteLength"), where, "byteLength")
     row = dtype.itemsize * columns
     stride = whole(view.get("byteStride", row), where, "byteStride")
     end = start + (stride * (count - 1) + row if count else 0)
-    if stride < row or end > length or offset + length > len(container.block):
+    if stride < row or end > length or offset + length > len(data):
         raise BodyError(f"{where}: an array runs past the end of its data; the file is damaged or cut short")
     if count == 0:
         return np.zeros((0, columns), dtype)
-    raw = np.frombuffer(container.block, np.uint8, stride * (count - 1) + row, offset + start)
+    raw = np.frombuffer(data, np.uint8, stride * (count - 1) + row, offset + start)
     rows = np.lib.stride_tricks.as_strided(raw, (count, row), (stride, 1))
     return np.ascontiguousarray(rows).view(dtype)
 
 
-def _with_sparse(container: Container, sparse: Any, values: Floats, where: str) -> Floats:
+def _with_sparse(container: Container, sparse: Any, values: Array, where: str) -> Array:
     if not isinstance(sparse, dict) or not all(isinstance(sparse.get(k), dict) for k in ("indices", "values")):
         raise BodyError(f"{where}: a sparse accessor lacks its indices or values")
     count = whole(sparse.get("count"), where, "a sparse accessor's count")
@@ -97,7 +101,7 @@ def _with_sparse(container: Container, sparse: Any, values: Floats, where: str) 
     return values
 
 
-def _fractions(values: Floats) -> Floats:
+def _fractions(values: Array) -> Array:
     if values.dtype.kind == "f":
         return values
     return np.maximum(values.astype(np.float64) / np.iinfo(values.dtype).max, -1.0)

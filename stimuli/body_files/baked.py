@@ -21,7 +21,9 @@ def read_baked(data: bytes, where: str, hair: str | None = None) -> Body:
     container = read_container(data, where)
     try:
         return _body(container, where, hair)
-    except (KeyError, IndexError, TypeError, AttributeError, OverflowError) as error:
+    except BodyError:
+        raise
+    except (KeyError, IndexError, TypeError, AttributeError, ValueError, OverflowError) as error:
         raise BodyError(f"{where}: the file is not laid out as a gaitlab body ({type(error).__name__})") from error
 
 

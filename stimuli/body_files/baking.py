@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stimuli.body import Body, Surface
 from stimuli.body_files.container import Container, write_container
@@ -29,7 +30,7 @@ class _Block:
     views: list[dict[str, Any]] = field(default_factory=list)
     accessors: list[dict[str, Any]] = field(default_factory=list)
 
-    def add(self, array: Floats, component: int, kind: str, count: int, target: int = 0, **more: Any) -> int:
+    def add(self, array: NDArray[Any], component: int, kind: str, count: int, target: int = 0, **more: Any) -> int:
         raw = np.ascontiguousarray(array).tobytes()
         view: dict[str, Any] = {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(raw)}
         if target:
@@ -72,7 +73,7 @@ def bake(body: Body) -> bytes:
         "buffers": [{"byteLength": len(block.data)}],
         "extras": {"gaitlab": {"name": body.name, "stature": round(body.stature, 5), "hair": styles}},
     }
-    return write_container(Container(document, bytes(block.data)))
+    return write_container(Container(document, (bytes(block.data),)))
 
 
 def _label(level: int, surface: Surface) -> str:
@@ -115,7 +116,10 @@ def _primitive(surface: Surface, block: _Block, material: int) -> dict[str, Any]
     count = len(surface.positions)
     box = np.round((surface.positions - BOX_CORNER) / BOX_SIZE * 65535)
     positions = _padded(np.clip(box, 0, 65535).astype("<u2"))
-    extent = {"min": [int(x) for x in positions[:, :3].min(axis=0)], "max": [int(x) for x in positions[:, :3].max(axis=0)]}
+    extent = {
+        "min": [int(x) for x in positions[:, :3].min(axis=0)],
+        "max": [int(x) for x in positions[:, :3].max(axis=0)],
+    }
     normals = _padded(np.round(np.clip(surface.normals, -1, 1) * 127).astype(np.int8))
     grey = np.round(np.clip(surface.occlusion, 0, 1) * 255).astype(np.uint8)
     colour = np.column_stack([grey, grey, grey, np.full(count, 255, np.uint8)])
@@ -136,12 +140,12 @@ def _primitive(surface: Surface, block: _Block, material: int) -> dict[str, Any]
     return {"attributes": attributes, "indices": indices, "material": material}
 
 
-def _padded(columns: Floats) -> Floats:
+def _padded(columns: NDArray[Any]) -> NDArray[Any]:
     """(V, 4): three columns and a zero, so that every row starts at a multiple of four bytes."""
     return np.column_stack([columns, np.zeros(len(columns), columns.dtype)])
 
 
-def _whole_weights(weights: Floats) -> Floats:
+def _whole_weights(weights: Floats) -> NDArray[np.uint8]:
     """(V, 4) 8-bit fractions whose rows sum to exactly 255; the largest takes up the rounding."""
     whole = np.floor(weights * 255 + 0.5).astype(np.int64)
     rows = np.arange(len(whole))

@@ -1,11 +1,15 @@
-"""The GLB container (glTF 2.0, section 4.4): a JSON document and one block of bytes. Knows no meshes."""
+"""glTF containers (glTF 2.0, sections 3.6.1 and 4.4): a JSON document and the bytes it points into. Knows no meshes."""
 
 from __future__ import annotations
 
+import base64
+import binascii
 import json
 import struct
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 from stimuli.body_files.errors import BodyError
 
@@ -15,10 +19,27 @@ _JSON, _BIN = b"JSON", b"BIN\0"
 
 @dataclass(frozen=True)
 class Container:
-    """The document as plain JSON values, and the bytes its buffer views point into."""
+    """The document as plain JSON values, and its buffers as bytes, in the document's order."""
 
     document: dict[str, Any]
-    block: bytes
+    buffers: tuple[bytes, ...]
+
+
+def open_container(path: Path) -> Container:
+    """A .glb file, or a .gltf file with its buffers embedded or in files beside it."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise BodyError(f"{path.name}: the file can't be opened ({error.strerror})") from error
+    if data[:4] == _MAGIC:
+        return read_container(data, path.name)
+    if path.suffix.lower() == ".fbx" or data[:18] == b"Kaydara FBX Binary":
+        raise BodyError(f"{path.name}: FBX can't be read; convert it first, e.g. FBX2glTF --binary {path.name}")
+    document = _document(data, path.name)
+    buffers = document.get("buffers", [])
+    if not isinstance(buffers, list):
+        raise BodyError(f"{path.name}: 'buffers' is not a list")
+    return Container(document, tuple(_buffer(buffer, path) for buffer in buffers))
 
 
 def read_container(data: bytes, where: str) -> Container:
@@ -40,20 +61,15 @@ def read_container(data: bytes, where: str) -> Container:
         place += 8 + size
     if _JSON not in chunks:
         raise BodyError(f"{where}: the GLB file has no JSON chunk")
-    try:
-        document = json.loads(chunks[_JSON].decode("utf-8"))
-    except (ValueError, RecursionError) as error:
-        raise BodyError(f"{where}: the JSON chunk can't be read ({type(error).__name__})") from error
-    if not isinstance(document, dict):
-        raise BodyError(f"{where}: the JSON chunk does not hold an object")
-    return Container(document, chunks.get(_BIN, b""))
+    return Container(_document(chunks[_JSON], where), (chunks.get(_BIN, b""),))
 
 
 def write_container(container: Container) -> bytes:
     """The bytes of a GLB file: the same container always gives the same bytes."""
     text = json.dumps(container.document, separators=(",", ":")).encode("utf-8")
     text += b" " * (-len(text) % 4)
-    block = container.block + b"\0" * (-len(container.block) % 4)
+    (block,) = container.buffers
+    block += b"\0" * (-len(block) % 4)
     length = 12 + 8 + len(text) + 8 + len(block)
     return b"".join(
         [
@@ -64,3 +80,33 @@ def write_container(container: Container) -> bytes:
             block,
         ]
     )
+
+
+def _document(text: bytes, where: str) -> dict[str, Any]:
+    try:
+        document = json.loads(text.decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        raise BodyError(f"{where}: its JSON can't be read ({type(error).__name__}); is it a glTF file?") from error
+    if not isinstance(document, dict):
+        raise BodyError(f"{where}: its JSON does not hold an object; is it a glTF file?")
+    return document
+
+
+def _buffer(buffer: Any, path: Path) -> bytes:
+    """Bytes of one buffer of a .gltf file: from a data address or from a file in the same folder or below."""
+    uri = buffer.get("uri") if isinstance(buffer, dict) else None
+    if not isinstance(uri, str):
+        raise BodyError(f"{path.name}: a buffer names no data")
+    if uri.startswith("data:"):
+        try:
+            return base64.b64decode(uri.partition(",")[2], validate=False)
+        except (binascii.Error, ValueError) as error:
+            raise BodyError(f"{path.name}: an embedded buffer is not valid base64") from error
+    folder = path.parent.resolve()
+    target = (folder / unquote(uri)).resolve()
+    if not target.is_relative_to(folder):
+        raise BodyError(f"{path.name}: the buffer {uri!r} lies outside the file's own folder")
+    try:
+        return target.read_bytes()
+    except OSError as error:
+        raise BodyError(f"{path.name}: its data file {uri!r} can't be opened; keep both files together") from error

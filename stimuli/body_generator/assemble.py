@@ -7,14 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stimuli.body import Body, Surface
+from stimuli.body import Body, Integers, Surface
 from stimuli.body_generator.face import face_patches
 from stimuli.body_generator.fields import Field
 from stimuli.body_generator.figure import Figure
-from stimuli.body_generator.hair import cap_field, comb, style, style_names
+from stimuli.body_generator.hair import cap_field, style, style_names
 from stimuli.body_generator.head import head_frame
 from stimuli.body_generator.heat import Heat, bone_heat, weights_at
 from stimuli.body_generator.light import occlusion
+from stimuli.body_generator.locks import comb
 from stimuli.body_generator.parts import Part, parts_of
 from stimuli.body_generator.polygons import (
     Mesh,
@@ -25,10 +26,23 @@ from stimuli.body_generator.polygons import (
     settled,
     simplified,
 )
-from stimuli.skeleton import PARENTS, Floats, Skeleton
+from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
 
-ROUGHNESS = {"skin": 0.55, "hair": 0.45, "shirt": 0.9, "trousers": 0.9, "shoes": 0.5, "soles": 0.8, "laces": 0.9,
-             "eye": 0.15, "iris": 0.12, "pupil": 0.1, "lash": 0.8, "brow": 0.8, "lip": 0.4}
+ROUGHNESS = {
+    "skin": 0.55,
+    "hair": 0.45,
+    "shirt": 0.9,
+    "trousers": 0.9,
+    "shoes": 0.5,
+    "soles": 0.8,
+    "laces": 0.9,
+    "eye": 0.15,
+    "iris": 0.12,
+    "pupil": 0.1,
+    "lash": 0.8,
+    "brow": 0.8,
+    "lip": 0.4,
+}
 ORDER = tuple(ROUGHNESS)
 LEVELS = 3
 UNION_SPACING = 1.15  # cm
@@ -115,11 +129,13 @@ def hair_pieces(name: str, figure: Figure, everything: Field, coarseness: float 
     finest = polished(polygonise(field, lower, upper, spacing), field, spacing, rounds=1)
     found = []
     for budget, segments, share in zip(HAIR_BUDGETS, LOCK_SEGMENTS, LOCK_SHARE, strict=True):
-        mesh = simplified(finest, round(budget / coarseness))
+        mesh = simplified(finest, round(budget * (2 if cut.locks == 0 else 1) / coarseness))
         normals = normals_of(field, mesh.positions, 0.3)
         shade = occlusion(everything, field, mesh.positions, normals)
-        level = [Piece(f"hair:{name}", mesh, normals, shade * (0.62 if segments else 0.85))]
-        if segments:
+        combed = segments > 0 and cut.locks > 0
+        grain = 0.62 if combed else np.random.default_rng(8).uniform(0.65, 1.0, len(shade))
+        level = [Piece(f"hair:{name}", mesh, normals, shade * grain)]
+        if combed:
             locks = comb(cut, frame, finest, segments, share / coarseness)
             open_sky = occlusion(everything, field, locks.mesh.positions, locks.normals)
             level.append(Piece(f"hair:{name}", locks.mesh, locks.normals, locks.shade * (0.35 + 0.65 * open_sky)))
@@ -160,9 +176,7 @@ def _surface(figure: Figure, name: str, pieces: list[Piece], heat: Heat) -> Surf
     )
 
 
-def _head_only(count: int) -> tuple[Floats, Floats]:
-    from stimuli.skeleton import JOINTS
-
+def _head_only(count: int) -> tuple[Integers, Floats]:
     joints = np.zeros((count, 4), dtype=int)
     joints[:, 0] = JOINTS.index("head")
     return joints, np.tile([1.0, 0, 0, 0], (count, 1))

@@ -87,8 +87,15 @@ def face_patches(head: Field, frame: HeadFrame, female: bool, fineness: float = 
     arch = 165.05 + (0.62 if female else 0.40) * np.sin(np.pi * np.clip(s * 0.80, 0, 1)) ** 1.2 - 0.35 * s**3
     fat = (0.40 if female else 0.58) * np.clip(s / 0.08, 0.35, 1) * (1 - 0.80 * s**1.8)
     rough = 0.05 * rng.random((2, len(s)))
-    strip("brow", brow_x, arch - fat * 0.5 - rough[0], arch + fat * 0.5 + rough[1], 3, 0.05,
-          0.75 + 0.25 * rng.random((len(s), 3)))
+    strip(
+        "brow",
+        brow_x,
+        arch - fat * 0.5 - rough[0],
+        arch + fat * 0.5 + rough[1],
+        3,
+        0.05,
+        0.75 + 0.25 * rng.random((len(s), 3)),
+    )
 
     patches += _lips(head, frame, female, count)
     return patches
@@ -111,7 +118,9 @@ def _lips(head: Field, frame: HeadFrame, female: bool, count: Callable[[float], 
     fade = (1 - np.abs(u) ** 2.2) ** 0.8
     middle = 156.93 + 0.05 * np.cos(2 * np.pi * u) + 0.12 * u**4
     bow = 0.66 if female else 0.48
-    top = middle + bow * fade * (1 - 0.16 * np.exp(-((u / 0.13) ** 2)) + 0.10 * np.exp(-(((np.abs(u) - 0.24) / 0.16) ** 2)))
+    top = middle + bow * fade * (
+        1 - 0.16 * np.exp(-((u / 0.13) ** 2)) + 0.10 * np.exp(-(((np.abs(u) - 0.24) / 0.16) ** 2))
+    )
     bottom = middle - (0.78 if female else 0.62) * fade * (1 - 0.1 * u**2)
     rows = count(5)
     v = np.linspace(0, 1, rows)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stimuli.body_generator.creases import shirt_folds, trouser_folds
 from stimuli.body_generator.fields import (
     Field,
     both_sides,
@@ -22,7 +23,6 @@ from stimuli.body_generator.fields import (
     smooth_min,
 )
 from stimuli.body_generator.figure import Figure
-from stimuli.body_generator.folds import shirt_folds, trouser_folds
 from stimuli.skeleton import Floats
 
 CLOTH = 0.75  # cm, thickness of a rolled hem as it reads from outside
@@ -70,8 +70,7 @@ def _trousers_solid(figure: Figure) -> Field:
     down[2] = 0
     leg = generalised_cylinder((hip[0], hip[1], 0), down, _LEFT, figure.trouser_leg, rounding=0.3)
     buttock = ellipsoid((7.6, hip[1] - 2.5, -6.2), (7.6, 8.2, 6.6))
-    seat = join(both_sides(leg, 0.8), (top, 4.5), (mirrored(buttock), 3.0))
-    return seat
+    return join(both_sides(leg, 0.8), (top, 4.5), (mirrored(buttock), 3.0))
 
 
 def _shirt_solid(figure: Figure, trousers: Field) -> Field:
@@ -89,9 +88,7 @@ def _shirt_solid(figure: Figure, trousers: Field) -> Field:
     else:
         chest = both_sides(ellipsoid((8.2, shoulder[1] - 10.5, 6.4), (8.4, 5.6, 3.9)), 2.5)
         chest_blend = 6.0
-    worn = join(
-        trunk, (mirrored(yoke), 7.0), (chest, chest_blend), (mirrored(blade), 4.0), (mirrored(sleeve), 5.5)
-    )
+    worn = join(trunk, (mirrored(yoke), 7.0), (chest, chest_blend), (mirrored(blade), 4.0), (mirrored(sleeve), 5.5))
     hem = figure.shirt[0][0]
 
     def field(points: Floats) -> Floats:

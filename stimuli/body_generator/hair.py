@@ -1,7 +1,7 @@
 """Hair: a cap that follows the skull from a natural hairline, and locks combed over it along a flow.
 
-A smooth cap alone is a helmet; overlapping tapered locks break its outline and its highlights. Coordinates as in
-`head`: y up with the crown at 175, z forwards, x to the person's left.
+A smooth cap alone is a helmet; overlapping tapered locks (see `locks`) break its outline and its highlights.
+Coordinates as in `head`: y up with the crown at 175, z forwards, x to the person's left.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from scipy.interpolate import PchipInterpolator
 
 from stimuli.body_generator.fields import Field, capsule, ellipsoid, generalised_cylinder, join, smooth_max
 from stimuli.body_generator.figure import Figure
-from stimuli.body_generator.head import HeadFrame, head_frame, skull_field
-from stimuli.body_generator.polygons import Mesh, normals_of
+from stimuli.body_generator.head import head_frame, skull_field
+from stimuli.body_generator.polygons import normals_of
 from stimuli.skeleton import Floats
 
 _ANGLES = np.radians([0, 14, 28, 40, 52, 62, 70, 80, 90, 98, 112, 128, 150, 180])  # 0 = front, 180 = nape
@@ -64,7 +64,7 @@ def _above_line(name: str) -> Field:
     return lambda p: p[:, 1] - line(_angle(p))
 
 
-def _cap(skull: Field, name: str, thickness: Callable[[Floats], Floats]) -> tuple[Field, Field]:
+def _cap(skull: Field, name: str, thickness: Callable[[Floats], Floats]) -> Field:
     above = _above_line(name)
 
     def cap(p: Floats) -> Floats:
@@ -72,7 +72,7 @@ def _cap(skull: Field, name: str, thickness: Callable[[Floats], Floats]) -> tupl
         grown = np.where(grown > 0, np.maximum(grown, 0) ** 0.6, 3 * grown)
         return skull(p) - thickness(p) * grown + 0.12
 
-    return cap, lambda p: skull(p) - thickness(p)
+    return cap
 
 
 def _short(skull: Field) -> Style:
@@ -85,7 +85,7 @@ def _short(skull: Field) -> Style:
         parting = np.exp(-(((p[:, 0] - 4.0) / 0.7) ** 2)) * (p[:, 2] > -3)
         return 0.55 + top * (1.25 + 0.9 * front) * (1 - 0.45 * parting) * np.where(p[:, 0] > 4.2, 0.75, 1)
 
-    cap, volume = _cap(skull, "short", thickness)
+    cap = _cap(skull, "short", thickness)
 
     def flow(p: Floats, n: Floats) -> Floats:
         up = np.clip(n[:, 1], 0, 1)[:, None] ** 1.5
@@ -100,7 +100,7 @@ def _short(skull: Field) -> Style:
         return 1.7 + 3.4 * top, 0.8 + 1.0 * top, 0.07 + 0.12 * top
 
     above = _above_line("short")
-    return Style(cap, volume, flow, 260, shape, lambda p: 0.9 - above(p))
+    return Style(cap, cap, flow, 260, shape, lambda p: 0.15 - above(p))
 
 
 def _cropped(skull: Field) -> Style:
@@ -109,7 +109,7 @@ def _cropped(skull: Field) -> Style:
     def thickness(p: Floats) -> Floats:
         return 0.45 + 0.45 * np.clip((p[:, 1] - 167) / 5, 0, 1)
 
-    cap, volume = _cap(skull, "cropped", thickness)
+    cap = _cap(skull, "cropped", thickness)
 
     def flow(p: Floats, n: Floats) -> Floats:
         forward = np.array([0.0, 0, 1.0]) + 0.5 * np.sign(p[:, :1]) * np.array([1.0, 0, 0])
@@ -121,7 +121,7 @@ def _cropped(skull: Field) -> Style:
         return 1.6 * one, 0.8 * one, 0.07 * one
 
     above = _above_line("cropped")
-    return Style(cap, volume, flow, 150, shape, lambda p: 0.8 - above(p))
+    return Style(cap, cap, flow, 0, shape, lambda p: 0.8 - above(p))
 
 
 def _bob(skull: Field) -> Style:
@@ -158,17 +158,13 @@ def _bob(skull: Field) -> Style:
         low = np.clip((156.5 - p[:, 1:2]) / 3, 0, 1)
         near_face = np.clip(1 - opening(p) / 1.6, 0, 1.6)[:, None]
         from_face = normals_of(opening, p, 0.3)
-        return (
-            up * away * 1.5 + np.array([0, -1.0, 0.12]) - 0.35 * low * n + 1.1 * near_face * from_face
-        )
+        return up * away * 1.5 + np.array([0, -1.0, 0.12]) - 0.35 * low * n + 1.1 * near_face * from_face
 
     def shape(p: Floats) -> tuple[Floats, Floats, Floats]:
         one = np.ones(len(p))
         return 6.5 * one, 1.35 * one, 0.24 * one
 
-    return Style(
-        cap, volume, flow, 210, shape, lambda p: np.maximum(-0.5 - opening(p), 152.3 - p[:, 1])
-    )
+    return Style(cap, volume, flow, 210, shape, lambda p: np.maximum(-0.5 - opening(p), 152.3 - p[:, 1]))
 
 
 def _ponytail(skull: Field) -> Style:
@@ -178,19 +174,19 @@ def _ponytail(skull: Field) -> Style:
     def thickness(p: Floats) -> Floats:
         return 0.75 + 0.45 * np.clip((p[:, 1] - 166) / 6, 0, 1)
 
-    cap_only, volume_only = _cap(skull, "ponytail", thickness)
+    cap_only = _cap(skull, "ponytail", thickness)
     tail = join(
-        capsule(knot + (0, 0, 0.8), knot + (0, 0.6, -1.6), 1.5, 1.7),
-        (capsule(knot + (0, 0.4, -1.6), knot + (0, -3.5, -3.6), 1.6, 2.2), 2.5),
-        (capsule(knot + (0, -3.5, -3.6), knot + (0, -13.0, -3.6), 2.2, 1.7), 2.5),
-        (capsule(knot + (0, -13.0, -3.6), knot + (0, -19.0, -2.2), 1.7, 0.6), 2.0),
+        capsule((0, 165.2, -10.8), (0, 165.8, -13.2), 1.5, 1.7),
+        (capsule((0, 165.6, -13.2), (0, 161.7, -15.2), 1.6, 2.2), 2.5),
+        (capsule((0, 161.7, -15.2), (0, 152.2, -15.2), 2.2, 1.7), 2.5),
+        (capsule((0, 152.2, -15.2), (0, 146.2, -13.8), 1.7, 0.6), 2.0),
     )
-    cap, volume = join(cap_only, (tail, 0.7)), join(volume_only, (tail, 0.7))
+    cap = join(cap_only, (tail, 0.7))
 
     def flow(p: Floats, n: Floats) -> Floats:
         to_knot = knot - p
         to_knot = to_knot / np.maximum(np.linalg.norm(to_knot, axis=1, keepdims=True), 1e-6)
-        behind = (p[:, 2:] < knot[2] - 0.8)
+        behind = p[:, 2:] < knot[2] - 0.8
         return np.where(behind, np.array([0, -1.0, 0.05]), to_knot)
 
     def shape(p: Floats) -> tuple[Floats, Floats, Floats]:
@@ -198,96 +194,7 @@ def _ponytail(skull: Field) -> Style:
         return np.where(behind, 7.5, 6.0), np.where(behind, 1.3, 1.1), np.where(behind, 0.22, 0.12)
 
     above = _above_line("ponytail")
-    return Style(cap, volume, flow, 240, shape, lambda p: np.where(p[:, 2] < -11, 146.9 - p[:, 1], 0.7 - above(p)))
-
-
-@dataclass(frozen=True, eq=False)
-class Locks:
-    """Locks as one open mesh (figure coordinates) with normals and shade (V,) in 0..1."""
-
-    mesh: Mesh
-    normals: Floats
-    shade: Floats
-
-
-def comb(cut: Style, frame: HeadFrame, cap: Mesh, segments: int, share: float = 1.0, seed: int = 11) -> Locks:
-    """Locks rooted all over the cap (figure coordinates), each laid along the flow and tapered to its tip.
-
-    segments: quads along a lock; share: part of the style's locks to comb.
-    """
-    rng = np.random.default_rng(seed)
-    roots = _spread_roots(frame.to_head(cap.positions), cut, rng, round(cut.locks * share))
-    length, width, lift = cut.shape(roots)
-    spread = 1 / np.sqrt(share)
-    length = length * rng.uniform(0.75, 1.25, len(roots))
-    width = width * spread * rng.uniform(0.8, 1.3, len(roots))
-    lift = lift * rng.uniform(0.6, 1.5, len(roots))
-    sway = rng.normal(0, 0.08, len(roots))
-    path = [roots]
-    normals = [normals_of(cut.volume, roots, 0.3)]
-    for _ in range(segments):
-        p, n = path[-1], normals[-1]
-        d = cut.flow(p, n)
-        side = np.cross(n, d)
-        d = d + sway[:, None] * side
-        d -= n * np.sum(d * n, axis=1, keepdims=True)
-        d /= np.maximum(np.linalg.norm(d, axis=1, keepdims=True), 1e-6)
-        following = p + d * (length / segments)[:, None]
-        m = normals_of(cut.volume, following, 0.3)
-        following = following - m * np.clip(cut.volume(following), -0.6, 0.6)[:, None]
-        outside = cut.ends(following) > 0
-        following[outside] = p[outside] + 0.25 * (following[outside] - p[outside])
-        path.append(following)
-        normals.append(m)
-    return _as_strips(np.stack(path, 1), np.stack(normals, 1), width, lift, frame, rng)
-
-
-def _spread_roots(points: Floats, cut: Style, rng: np.random.Generator, count: int) -> Floats:
-    """Blue-noise roots: farthest-point picks among the cap's outer vertices."""
-    outer = points[(cut.volume(points) > -0.35) & (cut.ends(points) < 0.2)]
-    pool = outer[rng.choice(len(outer), min(len(outer), 4000), replace=False)]
-    chosen = [0]
-    nearest = np.linalg.norm(pool - pool[0], axis=1)
-    for _ in range(count - 1):
-        chosen.append(int(np.argmax(nearest)))
-        nearest = np.minimum(nearest, np.linalg.norm(pool - pool[chosen[-1]], axis=1))
-    return pool[np.array(chosen)]
-
-
-def _as_strips(
-    path: Floats, normals: Floats, width: Floats, lift: Floats, frame: HeadFrame, rng: np.random.Generator
-) -> Locks:
-    """Roof-shaped strips, three points across, the edges sunk into the cap."""
-    count, rings, _ = path.shape
-    t = np.linspace(0, 1, rings)
-    along = np.gradient(path, axis=1)
-    across = np.cross(along, normals)
-    across /= np.maximum(np.linalg.norm(across, axis=2, keepdims=True), 1e-6)
-    taper = np.clip(0.55 + 1.2 * t, 0, 1) * np.sqrt(np.clip(1.04 - t, 0, 1))
-    half = 0.5 * width[:, None, None] * taper[None, :, None]
-    raised = (lift[:, None] * np.sin(np.pi * np.clip(0.05 + 0.85 * t, 0, 1))[None, :])[..., None]
-    crest = path + normals * raised
-    sunk = -0.20 - 0.1 * width[:, None, None]
-    left, right = path - across * half + normals * sunk, path + across * half + normals * sunk
-    vertices = np.stack([left, crest, right], axis=2)
-    lean = 0.75 * across
-    n = np.stack([normals - lean, normals, normals + lean], axis=2)
-    n /= np.linalg.norm(n, axis=-1, keepdims=True)
-    tone = rng.uniform(0.72, 1.0, count)[:, None, None]
-    depth = (0.62 + 0.38 * np.sin(np.pi * np.clip(0.1 + 0.65 * t, 0, 1)))[None, :, None]
-    shade = tone * depth * np.array([0.62, 1.0, 0.62])
-    i = np.arange(count * rings * 3).reshape(count, rings, 3)
-    quads = [(i[:, :-1, k], i[:, 1:, k], i[:, 1:, k + 1], i[:, :-1, k + 1]) for k in range(2)]
-    triangles = np.concatenate(
-        [np.stack([a.ravel(), b.ravel(), c.ravel()], 1) for a, b, c, _ in quads]
-        + [np.stack([a.ravel(), c.ravel(), d.ravel()], 1) for a, _, c, d in quads]
-    )
-    flat = vertices.reshape(-1, 3)
-    corner = flat[triangles]
-    face = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    wrong = np.sum(face * n.reshape(-1, 3)[triangles[:, 0]], axis=1) < 0
-    triangles = np.where(wrong[:, None], triangles[:, ::-1], triangles)
-    return Locks(Mesh(frame.to_figure(flat), triangles), n.reshape(-1, 3), shade.reshape(-1))
+    return Style(cap, cap, flow, 240, shape, lambda p: np.where(p[:, 2] < -11, 146.9 - p[:, 1], 0.15 - above(p)))
 
 
 def cap_field(cut: Style, figure: Figure) -> Field:

@@ -131,7 +131,9 @@ def _face(female: bool) -> Field:
     apple = mirrored(ellipsoid((3.6, 159.7, 6.9), (1.7, 1.6, 1.2)))
     hollow_fill = mirrored(ellipsoid((3.8, 157.6, 4.9), (1.35 + 0.1 * strong, 2.8, 2.3)))
     brow = mirrored(ellipsoid((2.9, 165.35, 8.05), (2.3 + 0.3 * strong, 0.62 + 0.18 * strong, 0.85 + 0.3 * strong)))
-    shape = join(skull, (jaw, 2.2), (chin, 2.0), (muzzle, 1.6), (cheek, 2.4), (apple, 2.0), (hollow_fill, 2.6), (brow, 1.6))
+    shape = join(
+        skull, (jaw, 2.2), (chin, 2.0), (muzzle, 1.6), (cheek, 2.4), (apple, 2.0), (hollow_fill, 2.6), (brow, 1.6)
+    )
     shape = cut(shape, mirrored(ellipsoid((3.15, 163.35, 10.5), (1.85, 1.15, 2.15 + 0.15 * strong))), 1.5)
     shape = cut(shape, mirrored(ellipsoid((7.6, 166.5, 6.0), (1.0, 2.5, 2.8))), 1.6)  # temples
     lids = mirrored(ellipsoid((3.2, 163.2, 6.95), (1.55, 1.16, 1.45)))

@@ -13,22 +13,20 @@ from scipy.sparse import coo_matrix, csc_matrix, diags
 from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
+from stimuli.body import Integers
 from stimuli.body_generator.polygons import Mesh
 from stimuli.skeleton import JOINTS, Floats
 
 HEAT = 1.6  # strength of the pull of the nearest bone; larger = narrower transitions at the joints
 NEIGHBOURS = 6
-HINGE_SHARPNESS = 1.6  # above 1: knees and elbows bend in a narrower band and keep more of their volume
+HINGE_SHARPNESS = 1.4  # above 1: knees and elbows bend in a narrower band and keep more of their volume
 _HINGES = tuple(
     (JOINTS.index(side + upper), JOINTS.index(side + lower))
     for side in ("left", "right")
     for upper, lower in (("UpperArm", "LowerArm"), ("UpperLeg", "LowerLeg"))
 )
 MIRROR_JOINT = np.array(
-    [
-        JOINTS.index(n.replace("left", "right") if n.startswith("left") else n.replace("right", "left"))
-        for n in JOINTS
-    ]
+    [JOINTS.index(n.replace("left", "right") if n.startswith("left") else n.replace("right", "left")) for n in JOINTS]
 )
 
 
@@ -60,7 +58,7 @@ def bone_heat(mesh: Mesh, segments: tuple[tuple[int, Floats, Floats], ...]) -> H
     return Heat(mesh.positions, weights / weights.sum(axis=1, keepdims=True))
 
 
-def weights_at(heat: Heat, points: Floats) -> tuple[Floats, Floats]:
+def weights_at(heat: Heat, points: Floats) -> tuple[Integers, Floats]:
     """(N, 4) joints and (N, 4) weights at points near the body, the same left and right.
 
     The fifth largest weight is subtracted before the rest is dropped, so that weights change without a jump
@@ -70,8 +68,8 @@ def weights_at(heat: Heat, points: Floats) -> tuple[Floats, Floats]:
     for upper, lower in _HINGES:
         pair = dense[:, [upper, lower]]
         sharp = pair**HINGE_SHARPNESS
-        dense[:, [upper, lower]] = pair.sum(axis=1, keepdims=True) * sharp / np.maximum(
-            sharp.sum(axis=1, keepdims=True), 1e-30
+        dense[:, [upper, lower]] = (
+            pair.sum(axis=1, keepdims=True) * sharp / np.maximum(sharp.sum(axis=1, keepdims=True), 1e-30)
         )
     order = np.argsort(-dense, axis=1, kind="stable")[:, :5]
     largest = np.take_along_axis(dense, order, axis=1)

@@ -33,7 +33,7 @@ def arm(figure: Figure) -> Field:
     limb = generalised_cylinder(shoulder, along, (0, 0, -1), stations, rounding=0.8)
     elbow = shoulder + figure.upper_arm * along
     thin = figure.arm[3][3]
-    point = ellipsoid(elbow + (0, 0, -thin * 0.72), (thin * 0.42, thin * 0.62, thin * 0.42))
+    point = ellipsoid(elbow - np.array([0, 0, 0.72 * thin]), (thin * 0.42, thin * 0.62, thin * 0.42))
     return join(limb, (point, 1.6), (hand(figure), 2.6))
 
 
@@ -57,7 +57,10 @@ def hand(figure: Figure) -> Field:
         (8.5, 0.1, 0, 4.05, 3.9, 1.15, 1.3, 2.6),
         (10.0, 0.1, 0, 3.8, 3.6, 0.95, 1.05, 2.6),
     ]
-    rows = [(s * k, cu * k, 0, a * k * slim, b * k * slim, c * k * slim, d * k * slim, n) for s, cu, _, a, b, c, d, n in palm_rows]
+    rows = [
+        (s * k, cu * k, 0, a * k * slim, b * k * slim, c * k * slim, d * k * slim, n)
+        for s, cu, _, a, b, c, d, n in palm_rows
+    ]
     parts: list[tuple[Field, float]] = [
         (ellipsoid(at(3.4, 2.4, 1.0), (1.9 * k, 2.9 * k, 1.5 * k)), 1.2),  # ball of the thumb
         (ellipsoid(at(5.0, -2.4, 0.7), (1.4 * k, 2.6 * k, 1.4 * k)), 1.0),
@@ -169,4 +172,3 @@ def laces(figure: Figure) -> Field:
         rods.append((capsule(at(4.5, 0, 9.6), at(5.9, side * 1.6, 9.0), 0.22 * k, 0.2 * k), 0.1))
     first, *rest = rods
     return join(first[0], *rest)
-

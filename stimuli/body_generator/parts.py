@@ -46,22 +46,63 @@ def parts_of(figure: Figure) -> tuple[tuple[Part, ...], Field]:
     neck_y = figure.neck[1]
 
     def part(
-        name: str, material: str, field: Field, lower: tuple[float, ...], upper: tuple[float, ...],
-        spacing: float, budgets: tuple[int, int, int], twin: bool = False, plain: Field | None = None,
+        name: str,
+        material: str,
+        field: Field,
+        lower: tuple[float, ...],
+        upper: tuple[float, ...],
+        spacing: float,
+        budgets: tuple[int, int, int],
+        twin: bool = False,
+        plain: Field | None = None,
     ) -> Part:
-        return Part(name, material, field, plain or field, np.array(lower, float), np.array(upper, float), spacing, budgets, twin)
+        return Part(
+            name,
+            material,
+            field,
+            plain or field,
+            np.array(lower, float),
+            np.array(upper, float),
+            spacing,
+            budgets,
+            twin,
+        )
 
     wide = sleeve_end[0] + 11
     arm_low = (sleeve_end[0] - 7, hand_end[1] - 2, -9)
     arm_high = (hand_end[0] + 6, sleeve_end[1] + 5, 9)
     found = (
-        part("head", "skin", face, (-12, neck_y - 12.5, -15), (12, figure.stature + 2, 15), 0.38, (4800, 1500, 330),
-             plain=head(figure, grown(worn.chest, -0.7))),
+        part(
+            "head",
+            "skin",
+            face,
+            (-12, neck_y - 12.5, -15),
+            (12, figure.stature + 2, 15),
+            0.38,
+            (4800, 1500, 330),
+            plain=head(figure, grown(worn.chest, -0.7)),
+        ),
         part("arm", "skin", left_arm, arm_low, arm_high, 0.32, (1600, 480, 140), True),
-        part("shirt", "shirt", worn.shirt, (-wide, hem - 2, -19), (wide, neck_y + 5, 19), 0.50, (4800, 1500, 330),
-             plain=worn.closed_shirt),
-        part("trousers", "trousers", worn.trousers, (-21, 1, -19), (21, hem + 22, 17), 0.55, (4200, 1400, 330),
-             plain=worn.closed_trousers),
+        part(
+            "shirt",
+            "shirt",
+            worn.shirt,
+            (-wide, hem - 2, -19),
+            (wide, neck_y + 5, 19),
+            0.50,
+            (4800, 1500, 330),
+            plain=worn.closed_shirt,
+        ),
+        part(
+            "trousers",
+            "trousers",
+            worn.trousers,
+            (-21, 1, -19),
+            (21, hem + 22, 17),
+            0.55,
+            (4200, 1400, 330),
+            plain=worn.closed_trousers,
+        ),
         part("shoe", "shoes", left_shoe, (x - 7, -1, z - 10 * k), (x + 8, 14, z + 24 * k), 0.36, (620, 180, 56), True),
         part("sole", "soles", left_sole, (x - 7, -1.5, z - 10 * k), (x + 8, 4, z + 24 * k), 0.36, (300, 110, 30), True),
         part("laces", "laces", laces(figure), (x - 5, 3, z), (x + 5, 13, z + 14), 0.14, (220, 50, 0), True),

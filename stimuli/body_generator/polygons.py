@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix
 
+from stimuli.body import Integers
 from stimuli.body_generator.fields import Field
 from stimuli.skeleton import Floats
 
@@ -22,7 +23,7 @@ class Mesh:
     """positions: (V, 3); triangles: (T, 3) int, counter-clockwise seen from outside."""
 
     positions: Floats
-    triangles: Floats
+    triangles: Integers
 
 
 def gradient(field: Field, points: Floats, step: float) -> Floats:

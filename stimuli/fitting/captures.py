@@ -88,10 +88,9 @@ def average_stride(
 
 
 def fourier(cycle: Floats) -> Floats:
-    """(N, S) periodic samples -> (S, C) coefficients by least squares (exact for equally spaced phases)."""
-    phases = np.arange(len(cycle)) / len(cycle)
-    design = basis(phases)
-    return np.asarray(np.linalg.lstsq(design, cycle, rcond=None)[0].T)
+    """(N, S) periodic samples -> (S, C) coefficients by least squares; nan where a signal is not there."""
+    design = basis(np.arange(len(cycle)) / len(cycle))
+    return np.asarray((np.linalg.pinv(design) @ cycle).T)
 
 
 def symmetric(coefficients: Floats) -> Floats:
@@ -140,20 +139,19 @@ def _in_walker_frame(clip: Clip) -> tuple[dict[str, Floats], Floats, dict[str, F
     turn_back = about_axis((0.0, 1.0, 0.0), -heading)
     signals: dict[str, Floats] = {}
 
-    def vector(role: str, alignment: Floats | None = None) -> Floats:
-        turned = multiply(turn_back, world[:, roles[role]])
-        return to_exponential(turned if alignment is None else multiply(turned, alignment))
+    def vector(role: str) -> Floats:
+        return to_exponential(multiply(turn_back, world[:, roles[role]]))
 
     for role in ("hips", "spine", "chest", "neck", "head"):
         signals[role] = vector(role)
     for side, sign in (("left", 1.0), ("right", -1.0)):
         signals[f"{side}shoulder"] = vector(f"{side}Shoulder")
         arm = MODEL_ARM * (sign, 1.0, 1.0)
-        for part, role, end in (("upperArm", "UpperArm", "LowerArm"), ("lowerArm", "LowerArm", "Hand")):
-            alignment = shortest_arc(arm, clip.offsets[roles[f"{side}{end}"]])
-            signals[side + part] = vector(f"{side}{role}", alignment)
-            if part == "lowerArm":
-                signals[f"{side}hand"] = vector(f"{side}Hand", alignment)
+        hand = clip.joints.index(f"{side.capitalize()}FingerBase")
+        chain = [roles[f"{side}{role}"] for role in ("UpperArm", "LowerArm", "Hand")] + [hand]
+        for part, (near, far) in zip(("upperArm", "lowerArm", "hand"), pairwise(chain), strict=True):
+            bone_of_arm = rotate(turn_back, places[:, far] - places[:, near])
+            signals[side + part] = to_exponential(shortest_arc(np.broadcast_to(arm, bone_of_arm.shape), bone_of_arm))
 
         def bone(upper: str, lower: str) -> Floats:
             return rotate(turn_back, places[:, roles[lower]] - places[:, roles[upper]])
@@ -212,9 +210,8 @@ def _stride(signals: dict[str, Floats], first: int, last: int, mirrored: bool, l
         columns.append(sampled(side + name))
     stride = np.concatenate(columns, axis=1)
     assert stride.shape[1] == len(SIGNALS) and len(MIDLINE) == 16
-    line = np.linspace(signals["hips_shift"][first], signals["hips_shift"][last], SAMPLES + 1)[:-1]
     hips, foot = SIGNALS.index("hips_shift"), SIGNALS.index("foot_shift")
-    line += np.mean(stride[:, hips] - line)
+    middle = np.mean(stride[:, hips])
     for column in (hips, foot):
-        stride[:, column] = (stride[:, column] - line) / leg
+        stride[:, column] = (stride[:, column] - middle) / leg
     return stride * MIRROR_SIGN if mirrored else stride

@@ -1,13 +1,13 @@
 """Fits the gait model: `python -m stimuli.fitting.gait_model --mocap SHARED` writes stimuli/data/gait_model.npz.
 
-SHARED holds mocap/bvh/cmu/*.bvh, mocap/REFERENCE_C3D_EVENTS.csv and gait-tables/schreiber_moissenet_*.csv.
+SHARED holds mocap/bvh/cmu, mocap/c3d/schreiber-moissenet, mocap/REFERENCE_C3D_EVENTS.csv and gait-tables.
 The same files give the same coefficients: nothing is drawn at random.
 
 Every Fourier coefficient of every signal is a mixed linear model
     value = b0 + b1 length + b2 cadence + b3 sex + laboratory + person + error
 with a random intercept per person (variance ratio PERSON_RATIO) and a small ridge on the slopes. The laboratory term
-takes up where the two sources put their zero (the CMU skeletons' rest pose is not a standing pose); predictions are
-those of the gait laboratory for the sagittal leg signals and of CMU for everything else.
+takes up where the two sources put their zero (the CMU skeletons' rest pose is not a standing pose). Predictions are
+those of the gait laboratory, which knows standing, foot strikes and sex; CMU adds slopes, people, neck and head.
 """
 
 from __future__ import annotations
@@ -18,34 +18,32 @@ from pathlib import Path
 
 import numpy as np
 
-from stimuli.fitting import captures, tables
+from stimuli.fitting import captures, laboratory
 from stimuli.fitting.captures import Walk, shifted
 from stimuli.gait_model import SIGNALS, GaitModel, Step, basis
 from stimuli.skeleton import Floats
 
 PERSON_RATIO = 3.0  # variance between people over variance between walks of one person
-RIDGE = np.array([0.0, 0.02, 0.01, 1.0, 0.0])  # on intercept, length, cadence, sex, laboratory
-LEG_SIGNALS = ("thigh", "shank", "foot")
-CALIBRATED_MEAN = {"hips_x": 1.0, "spine_x": 1.5, "chest_x": 2.2, "neck_x": 2.2, "head_x": 0.0}
-"""deg. The ASF rest pose of the CMU skeletons is no standing pose, so the mean forward tilt of the trunk is taken from
-Schreiber & Moissenet (2.2 degrees over the cycle) and the head is level. The changes over the cycle are captured."""
-STANCE_YAW = {"foot_yaw": -5.0, "knee_yaw": -2.0}
-"""deg, right foot and knee turned outward in stance (Murray 1964: foot about 7). The captured ankle-to-toe line is no
-foot axis and the captured thigh's own axis is not calibrated, so only their changes over the cycle are captured."""
+RIDGE = np.array([0.0, 0.02, 0.01, 0.3, 0.0])  # on intercept, length, cadence, sex, laboratory
+CAPTURED_MEAN = {"neck_x": 2.2, "head_x": 0.0}
+"""deg. Only CMU has neck and head, and its rest pose is no standing pose: the mean neck follows the thorax of Schreiber
+& Moissenet (2.2 degrees over the cycle) and the mean head is level. The changes over the cycle are captured."""
 KNEE_YAW_SHARE = 0.6
 """Skin movement makes the thigh's captured rotation about its own axis too large (Cappozzo et al. 1996)."""
 CALIBRATION_SHARE = 0.4
-"""Share of a person's own mean offset that is believed in signals whose zero depends on the rest pose."""
+"""Share of a CMU person's own mean offset that is believed in signals whose zero depends on the rest pose."""
+POSED = ("hips_x", "spine_x", "chest_x", "neck_x", "head_x", "thigh", "shank", "foot", "foot_yaw", "knee_yaw")
 
 
-def read_all(shared: Path) -> list[Walk]:
-    """Every walk the model is fitted to; CMU walks are brought to the gait laboratory's heel strike."""
-    laboratory = tables.read_walks(shared / "gait-tables", shared / "mocap" / "REFERENCE_C3D_EVENTS.csv")
-    return [_registered(walk, laboratory) for walk in captures.read_walks(shared / "mocap" / "bvh" / "cmu")] + laboratory
+def read_all(shared: Path) -> tuple[list[Walk], Floats]:
+    """Every walk the model is fitted to, CMU brought to the laboratory's heel strike; and the standing posture."""
+    measured, standing = laboratory.read_walks(shared)
+    cmu = [_registered(walk, measured) for walk in captures.read_walks(shared / "mocap" / "bvh" / "cmu")]
+    return cmu + measured, standing
 
 
 def fit(walks: Sequence[Walk], standing: Floats) -> GaitModel:
-    """The model of a set of walks of both laboratories; standing: see tables.standing_posture."""
+    """The model of a set of walks of both laboratories; standing: see laboratory.read_walks."""
     steps = [Step.of(walk.speed, walk.step_frequency, walk.leg_length) for walk in walks]
     lengths = np.array([step.length for step in steps])
     frequencies = np.array([step.frequency for step in steps])
@@ -60,28 +58,26 @@ def fit(walks: Sequence[Walk], standing: Floats) -> GaitModel:
         [*frame.predictors(step, walk.sex), float(walk.laboratory == "CMU")]
         for step, walk in zip(steps, walks, strict=True)
     ])
-    people = tuple(sorted({walk.person for walk in walks if walk.laboratory == "CMU"}))
+    people = tuple(sorted({walk.person for walk in walks}))
     coefficients = np.array([walk.coefficients for walk in walks])
     effects = np.zeros((4, *coefficients.shape[1:]))
     offsets = np.zeros((len(people), *coefficients.shape[1:]))
     for index, name in enumerate(SIGNALS):
-        use = [n for n in range(len(walks)) if not np.isnan(coefficients[n, index, 0])]
-        columns = [0, 1, 2, 3, 4] if name in LEG_SIGNALS else [0, 1, 2]
-        fixed, own = _mixed_fit(design[np.ix_(use, columns)], coefficients[use, index], [walks[n].person for n in use],
-                                RIDGE[columns])
-        effects[: min(len(columns), 4), index] = fixed[:4]
+        use = [n for n in range(len(walks)) if not np.isnan(coefficients[n, index]).any()]
+        both = len({walks[n].laboratory for n in use}) > 1
+        columns = [0, 1, 2, 3, 4] if both else [0, 1, 2]
+        fixed, own = _mixed_fit(
+            design[np.ix_(use, columns)], coefficients[use, index], [walks[n].person for n in use], RIDGE[columns]
+        )
+        share = KNEE_YAW_SHARE if name == "knee_yaw" else 1.0
+        effects[: min(len(columns), 4), index] = share * fixed[:4]
         for row, person in enumerate(people):
-            offsets[row, index] = own[person]
-        if name in CALIBRATED_MEAN:
-            effects[0, index, 0] = np.radians(CALIBRATED_MEAN[name])
-        if name in STANCE_YAW:
-            share = KNEE_YAW_SHARE if name == "knee_yaw" else 1.0
-            effects[:, index] *= share
-            offsets[:, index] *= share
-            flat = basis(np.linspace(0.1, 0.4, 31)) @ effects[0, index]
-            effects[0, index, 0] += np.radians(STANCE_YAW[name]) - np.mean(flat)
-        if name in CALIBRATED_MEAN or name in LEG_SIGNALS or name in STANCE_YAW:
-            offsets[:, index, 0] *= CALIBRATION_SHARE
+            if person in own:
+                offsets[row, index] = share * own[person]
+                if person.startswith("CMU") and name in POSED:
+                    offsets[row, index, 0] *= CALIBRATION_SHARE
+        if name in CAPTURED_MEAN:
+            effects[0, index, 0] = np.radians(CAPTURED_MEAN[name])
     measured = [n for n, walk in enumerate(walks) if not np.isnan(walk.stance_share)]
     stance, _ = _mixed_fit(design[np.ix_(measured, [0, 1, 2, 3])], np.array([[walks[n].stance_share] for n in measured]),
                            [walks[n].person for n in measured], RIDGE[:4])
@@ -111,7 +107,7 @@ def _mixed_fit(design: Floats, values: Floats, people: list[str], ridge: Floats)
     return effects, dict(zip(names, own, strict=True))
 
 
-def _registered(walk: Walk, laboratory: Sequence[Walk]) -> Walk:
+def _registered(walk: Walk, measured: Sequence[Walk]) -> Walk:
     """A CMU walk shifted in phase so that its knee bends when the laboratory's knees do.
 
     The laboratory's cycles start at the force plate's foot strike; CMU has no plates, and the ankle's furthest
@@ -119,7 +115,7 @@ def _registered(walk: Walk, laboratory: Sequence[Walk]) -> Walk:
     """
     thigh, shank = SIGNALS.index("thigh"), SIGNALS.index("shank")
     phases = np.arange(200) / 200
-    reference = np.mean([w.coefficients[thigh] - w.coefficients[shank] for w in laboratory], axis=0)
+    reference = np.mean([w.coefficients[thigh] - w.coefficients[shank] for w in measured], axis=0)
     target = basis(phases) @ reference
     candidates = np.arange(-0.06, 0.0601, 0.0025)
     knee = walk.coefficients[thigh] - walk.coefficients[shank]
@@ -135,8 +131,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--mocap", type=Path, required=True, help="folder that holds mocap/ and gait-tables/")
     parser.add_argument("--out", type=Path, default=Path(__file__).parents[1] / "data" / "gait_model.npz")
     chosen = parser.parse_args(arguments)
-    walks = read_all(chosen.mocap)
-    save(fit(walks, tables.standing_posture(chosen.mocap / "gait-tables")), chosen.out)
+    walks, standing = read_all(chosen.mocap)
+    save(fit(walks, standing), chosen.out)
     print(f"{len(walks)} walks of {len({walk.person for walk in walks})} people -> {chosen.out.name}")
 
 

@@ -22,6 +22,9 @@ from stimuli.skeleton import Floats
 SHOULDER_DROP = 0.04
 """m, centre of the shoulder below the acromion marker (about, after Rab et al. 2002)."""
 
+MISLABELLED = np.radians(40.0)
+"""A trunk turned further than this from standing has its markers' names exchanged (one trial) and is left out."""
+
 Markers = dict[str, Floats]
 """Marker name -> (T, 3) m; X left, Y up, Z the walking direction."""
 
@@ -43,9 +46,10 @@ def read_walks(shared: Path) -> tuple[list[Walk], Floats]:
     walks, postures = [], {}
     for row in _rows(shared / "gait-tables" / "schreiber_moissenet_spatiotemporal.csv"):
         standing = _read(folder / f"{row['subject']}_ST.c3d")
-        if "R_FME" not in standing.markers or "R_TAM" not in standing.markers:
+        trial = _read(folder / f"{row['trial']}.c3d")
+        if not all({"R_FME", "L_FME", "R_TAM", "L_TAM"} <= set(recording.markers) for recording in (standing, trial)):
             continue
-        walk, posture = _walk(_read(folder / f"{row['trial']}.c3d"), standing, row, events)
+        walk, posture = _walk(trial, standing, row, events)
         walks.append(walk)
         postures[row["subject"]] = posture
     return walks, np.asarray(np.mean(list(postures.values()), axis=0))
@@ -90,6 +94,8 @@ def _signals(markers: Markers, standing: Markers) -> tuple[dict[str, Floats], fl
     for segment, frame in (("hips", _pelvis), ("chest", _thorax)):
         zero = from_matrix(_without_yaw(frame(standing).mean(axis=0)))
         signals[segment] = to_exponential(multiply(from_matrix(frame(markers)), inverse(zero)))
+        if np.abs(signals[segment]).max() > MISLABELLED:
+            signals[segment] = np.full_like(signals[segment], np.nan)
     signals["spine"] = 0.5 * (signals["hips"] + signals["chest"])
     for segment in ("neck", "head"):
         signals[segment] = np.full_like(signals["hips"], np.nan)
@@ -179,7 +185,7 @@ def _unit(vectors: Floats) -> Floats:
 def _read(path: Path) -> _Trial:
     """Markers in our axes: up is the file's Z, forward the travel along X (or, standing, where the feet point)."""
     content = ezc3d.c3d(str(path))
-    places = content["data"]["points"][:3].transpose(2, 1, 0) / 1000.0
+    places = _filled(content["data"]["points"][:3].transpose(2, 1, 0) / 1000.0)
     names = list(content["parameters"]["POINT"]["LABELS"]["value"])
     marker = {name: places[:, index] for index, name in enumerate(names)}
     facing = np.nanmean(marker["R_FM2"] - marker["R_FCC"] + marker["L_FM2"] - marker["L_FCC"], axis=0)[0]
@@ -187,6 +193,20 @@ def _read(path: Path) -> _Trial:
     ours = {name: np.stack([sign * p[:, 1], p[:, 2], sign * p[:, 0]], axis=1) for name, p in marker.items()}
     header = content["header"]["points"]
     return _Trial(ours, float(header["frame_rate"]), int(header["first_frame"]))
+
+
+def _filled(places: Floats) -> Floats:
+    """Positions (T, M, 3) with short gaps filled along a line; nan for a marker missing for a tenth of the time."""
+    missing = np.isnan(places).any(axis=2) | (places == 0.0).all(axis=2)
+    frames = np.arange(len(places))
+    for marker in range(places.shape[1]):
+        seen = ~missing[:, marker]
+        if seen.mean() < 0.9:
+            places[:, marker] = np.nan
+        elif not seen.all():
+            for axis in range(3):
+                places[:, marker, axis] = np.interp(frames, frames[seen], places[seen, marker, axis])
+    return places
 
 
 def _rows(path: Path) -> list[dict[str, str]]:

@@ -52,8 +52,8 @@ def read_gltf_motion(
     """One animation of a .glb or .gltf file.
 
     animation: its name, or its number from 0; may be left out where there is only one
-    rate:      Hz at which it is sampled; the spacing of its keys, at least 20, if None. The rest as for `read_bvh`, the unit
-               being metres by the format.
+    rate:      Hz at which it is sampled; the spacing of its keys, at least 20, if None. The rest as for `read_bvh`,
+               the unit being metres by the format.
     raises:    MotionFileError naming file, place and reason
     """
     path = Path(path)

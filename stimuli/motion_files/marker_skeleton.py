@@ -1,8 +1,8 @@
 """From markers to a walking skeleton: segments scaled to the person, then all markers fitted at once.
 
 The pose of every frame minimises the squared distances of all markers and joint centres from where a skeleton of
-constant bone lengths carries them (global optimisation, Lu & O'Connor, J. Biomech. 32, 1999). Solved segment by segment:
-with everything else held, the best rotation of one segment has a closed form (Kabsch, Acta Cryst. A32, 1976), and what
+constant bone lengths carries them (global optimisation, Lu & O'Connor, J. Biomech. 32, 1999). Solved segment by
+segment: with everything else held, the best rotation of one segment has a closed form (Kabsch, Acta Cryst. A32, 1976), and what
 hangs on it counts as one heavy marker at the next joint. Sweeps repeat until nothing moves.
 """
 
@@ -126,7 +126,7 @@ def _first_guess(paths: dict[str, Floats], centres: dict[str, Floats], joints: t
     _, left, up, _ = pelvis_axes(paths)
     guess = {"hips": _axes(up * 0 + up, left)}
     if "spine" in joints:
-        shoulders = paths["left_shoulder"] - paths["right_shoulder"] if "left_shoulder" in paths else left
+        shoulders = paths["left_shoulder"] - paths["right_shoulder"] if {"left_shoulder", "right_shoulder"} <= set(paths) else left
         trunk = _axes(centres["neck"] - centres["spine"], shoulders)
         guess.update({joint: trunk for joint in ("spine", "chest", "neck", "head") if joint in joints})
     for side, sign in (("left", 1.0), ("right", -1.0)):

@@ -195,3 +195,23 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
     (tmp_path / "out").write_text("a file, not a folder")
     with pytest.raises(AnalysisError, match="cannot be written"):
         analyse(folder, tmp_path / "out")
+
+
+def test_assumptions_stand_beside_the_test_and_in_a_table(analysed: tuple[Path, Path, AnalysisOutcome]) -> None:
+    _, out, outcome = analysed
+    checks = set(pd.read_csv(out / "assumptions.csv")["check"])
+    assert checks >= {"Shapiro-Wilk", "Mauchly", "Mauchly (textbook)", "Levene (mean)", "learning", "anchoring"}
+    page = outcome.report.read_text(encoding="utf-8")
+    section = page[page.index("Analysis of variance</h2>") : page.index("Figures</h2>")]
+    for word in ("Sphericity:", "Normality:", "Equal variances", "Outliers:", "Learning:", "Anchoring"):
+        assert word in section
+
+
+def test_tables_for_latex_escape_what_latex_would_read(analysed: tuple[Path, Path, AnalysisOutcome]) -> None:
+    from analysis.latex import escaped
+
+    _, out, _ = analysed
+    text = (out / "tables.tex").read_text(encoding="utf-8")
+    assert r"actor $\times$ speed & " in text
+    assert text.count(r"\begin{table}") == text.count(r"\end{table}") >= 2
+    assert escaped("50 % of a_b & −1 {x}") == r"50 \% of a\_b \& $-$1 \{x\}"

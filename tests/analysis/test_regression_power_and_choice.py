@@ -92,7 +92,8 @@ def test_power_in_every_convention(case: dict[str, Any]) -> None:
     if case["type"] in ("within", "between", "interaction"):
         row = power_rm_anova(
             effect=case["type"], measures=case["measures"], n=case["n_total"], f=case["f"],
-            groups=case["groups"], rho=case["rho"], epsilon=case["epsilon"], alpha=case["alpha"], convention=case["convention"],
+            groups=case["groups"], rho=case["rho"], epsilon=case["epsilon"],
+            alpha=case["alpha"], convention=case["convention"],
         ).iloc[0]  # fmt: skip
         assert row["lambda_"] == pytest.approx(case["lambda"], abs=1e-7)
     elif case["type"] == "regression_r2_increase":

@@ -12,9 +12,14 @@ from stimuli.skeleton import JOINTS, PARENTS
 from stimuli.skinning import skin
 
 NAMES = body_names()
-MIRROR = np.array([JOINTS.index(_other) for _other in (
-    n.replace("left", "right") if n.startswith("left") else n.replace("right", "left") for n in JOINTS
-)])
+MIRROR = np.array(
+    [
+        JOINTS.index(_other)
+        for _other in (
+            n.replace("left", "right") if n.startswith("left") else n.replace("right", "left") for n in JOINTS
+        )
+    ]
+)
 
 
 def posed(body, **degrees):

@@ -31,7 +31,10 @@ def test_the_same_figure_gives_the_same_bytes(coarse):
 def test_a_coarse_woman_is_as_tall_and_as_stout_as_she_should_be(coarse):
     assert coarse.stature == pytest.approx(1.63, abs=0.02)
     litres = 1000 * sum(
-        np.sum(np.cross(s.positions[s.triangles[:, 1]], s.positions[s.triangles[:, 2]]) * s.positions[s.triangles[:, 0]]) / 6
+        np.sum(
+            np.cross(s.positions[s.triangles[:, 1]], s.positions[s.triangles[:, 2]]) * s.positions[s.triangles[:, 0]]
+        )
+        / 6
         for s in coarse.levels[1]
         if s.name in ("shirt", "trousers")
     )

@@ -1,0 +1,136 @@
+"""Simulated observers adjusting step frequency, by the thousand and without a session.
+
+The same model as the observers of `gaitlab simulate` (preference per actor, noise per trial, anchoring,
+the range of the task), without their key presses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from analysis.cells import CellMeans
+from analysis.errors import AnalysisError
+from analysis.plan import AnalysisPlan, plan_of
+
+MEASURES = ("walk_ratio", "step_frequency", "step_length")
+
+
+@dataclass(frozen=True)
+class ExperimentModel:
+    """What is needed to draw experiments of a study and reduce them to cell means."""
+
+    plan: AnalysisPlan
+    design: CellMeans  # N participants in groups, c within cells; its values are zeros
+    actor: np.ndarray  # (trials,) index of the actor of every trial of a participant
+    speed: np.ndarray  # (trials,) m/s
+    start: np.ndarray  # (trials,) steps/min
+    cell: np.ndarray  # (trials, c) averaging weights of the trials in every within cell
+    mean: np.ndarray  # (actors,) m·min
+    sd: np.ndarray
+    shared: float
+    trial_noise: float
+    anchoring: float
+    lowest: float  # steps/min
+    highest: float
+
+
+def experiment_model(study: Mapping[str, Any], participants: int | None = None) -> ExperimentModel:
+    """The model in a study file (as a plain dict), for so many participants (planned, if not given)."""
+    plan = plan_of(study)
+    simulation = study.get("simulation")
+    if not simulation:
+        raise AnalysisError("The study has no `simulation:` section, so there are no observers to simulate.")
+    if plan.measure not in MEASURES:
+        raise AnalysisError(f"Power can be simulated for {', '.join(MEASURES)}, not for {plan.measure!r}.")
+    n = participants or plan.planned
+    if not n:
+        raise AnalysisError("Say how many participants to simulate; the study file plans no number.")
+    conditions = list(product(*(study["factors"][name] for name in plan.factors)))
+    columns = {name: [condition[i] for condition in conditions] for i, name in enumerate(plan.factors)}
+    stimulus, task = study.get("stimulus") or {}, study.get("task") or {}
+    actors = _values(stimulus.get("actor", ""), columns, len(conditions))
+    population = simulation["preferred_walk_ratio"]
+    names = list(dict.fromkeys(map(str, actors)))
+    missing = [name for name in names if name not in population]
+    if missing:
+        raise AnalysisError(f"The study's simulation gives no preferred walk ratio for {', '.join(missing)}.")
+    bounds = task.get("range") or {}
+    return ExperimentModel(
+        plan,
+        _design(plan, n),
+        np.tile([names.index(str(actor)) for actor in actors], plan.repetitions),
+        np.tile(np.array(_values(stimulus.get("speed"), columns, len(conditions)), dtype=float), plan.repetitions),
+        np.tile(np.array(_values(task.get("start"), columns, len(conditions)), dtype=float), plan.repetitions),
+        _weights(plan, columns, len(conditions)),
+        np.array([population[name]["mean"] for name in names], dtype=float),
+        np.array([population[name]["sd"] for name in names], dtype=float),
+        float(simulation.get("shared", 0.5)),
+        float(simulation.get("trial_noise", 0.0006)),
+        float(simulation.get("anchoring", 0.0)),
+        float(bounds.get("minimum", 80.0)),
+        float(bounds.get("maximum", 120.0)),
+    )
+
+
+def cell_means_of(model: ExperimentModel, seed: int, experiments: range) -> np.ndarray:
+    """(S, N, c) cell means of the numbered experiments; each depends on the seed and its number alone."""
+    n, trials = len(model.design.subjects), len(model.actor)
+    values = np.empty((len(experiments), n, model.cell.shape[1]))
+    for place, number in enumerate(experiments):
+        rng = np.random.default_rng([seed, number])
+        own, apart = rng.standard_normal((n, 1)), rng.standard_normal((n, len(model.mean)))
+        z = np.sqrt(model.shared) * own + np.sqrt(1 - model.shared) * apart
+        preferred = np.maximum(model.mean + model.sd * z, model.mean / 4)
+        wanted = preferred[:, model.actor] + model.trial_noise * rng.standard_normal((n, trials))
+        frequency = np.sqrt(60 * model.speed / np.maximum(wanted, 1e-4))
+        frequency += model.anchoring * (model.start - frequency)
+        np.clip(frequency, model.lowest, model.highest, out=frequency)
+        values[place] = _measure(model, frequency) @ model.cell
+    return values
+
+
+def _measure(model: ExperimentModel, frequency: np.ndarray) -> np.ndarray:
+    if model.plan.measure == "step_frequency":
+        return frequency
+    length = 60 * model.speed / frequency
+    return length if model.plan.measure == "step_length" else length / frequency
+
+
+def _values(setting: Any, columns: Mapping[str, list[Any]], count: int) -> list[Any]:
+    """The value of a stimulus setting in every condition: `$factor`, or a constant."""
+    if isinstance(setting, str) and setting.startswith("$"):
+        if setting[1:] not in columns:
+            raise AnalysisError(f"The study file refers to {setting!r}, which is no factor.")
+        return columns[setting[1:]]
+    if setting is None:
+        raise AnalysisError("The study file does not say which actor, speed or start value is shown.")
+    return [setting] * count
+
+
+def _design(plan: AnalysisPlan, n: int) -> CellMeans:
+    """n participants, assigned to the between groups in turn."""
+    groups = list(product(*(range(len(plan.levels[name])) for name in plan.between)))
+    within = {name: plan.levels[name] for name in plan.within}
+    between = {name: plan.levels[name] for name in plan.between}
+    cells = int(np.prod([len(levels) for levels in within.values()] or [1]))
+    if n <= len(groups):
+        raise AnalysisError(f"{n} participants are too few for {len(groups)} group(s).")
+    places = np.array([groups[i % len(groups)] for i in range(n)], dtype=np.intp).reshape(n, len(between))
+    names = tuple(f"{i + 1}" for i in range(n))
+    return CellMeans(plan.measure, np.zeros((n, cells)), names, within, between, places, {}, ())
+
+
+def _weights(plan: AnalysisPlan, columns: Mapping[str, list[Any]], count: int) -> np.ndarray:
+    """(trials, c) so that trials @ weights are the means of the within cells."""
+    cell = np.zeros(count, dtype=np.intp)
+    for name in plan.within:
+        levels = list(dict.fromkeys(map(str, columns[name])))
+        cell = cell * len(levels) + np.array([levels.index(str(value)) for value in columns[name]])
+    cell = np.tile(cell, plan.repetitions)
+    weights = (cell[:, None] == np.arange(cell.max() + 1)).astype(float)
+    return weights / weights.sum(axis=0)

@@ -1,0 +1,137 @@
+"""Bodies in the GPU's memory: each level of detail of each body is uploaded once, when first drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+
+from stimuli.body import Body, Surface
+
+VERTEX = np.dtype(
+    [
+        ("position", "3f4"),
+        ("normal", "3f4"),
+        ("weights", "4f4"),
+        ("occlusion", "f4"),
+        ("joints", "4u1"),
+        ("material", "u4"),
+    ]
+)
+LIT_FORMAT = "3f4 3f4 4f4 1f4 4u1 1u4"
+LIT_NAMES = ("position", "normal", "weights", "occlusion", "joints", "material")
+SHADOW_FORMAT = "3f4 12x 4f4 4x 4u1 4x"
+SHADOW_NAMES = ("position", "weights", "joints")
+
+MOST_MATERIALS = 24  # as in walker.frag.glsl
+MOST_KEPT = 48  # levels of bodies kept on the GPU, about 1 MB each
+
+FINISHES: dict[str, tuple[float, float, float]] = {
+    "skin": (1.0, 0.10, 0.75),
+    "lip": (0.8, 0.05, 1.0),
+    "eye": (0.0, 0.0, 1.0),
+    "iris": (0.0, 0.0, 1.0),
+    "pupil": (0.0, 0.0, 1.0),
+    "hair": (0.0, 0.22, 0.45),
+    "brow": (0.0, 0.0, 0.2),
+    "lash": (0.0, 0.0, 0.0),
+    "shoes": (0.0, 0.05, 0.8),
+    "soles": (0.0, 0.0, 0.3),
+}
+"""Material name -> how much it is skin, fuzz that lights up at grazing angles, strength of its highlight."""
+
+CLOTH = (0.0, 0.16, 0.15)
+
+
+@dataclass(frozen=True, eq=False)
+class BodyOnGpu:
+    """One level of detail of one body.
+
+    lit, shadow: vertex arrays for the two passes; colours, finishes: bytes of the shader's material arrays.
+    """
+
+    body: Body
+    lit: moderngl.VertexArray
+    shadow: moderngl.VertexArray
+    buffers: tuple[moderngl.Buffer, moderngl.Buffer]
+    colours: bytes
+    finishes: bytes
+
+    def release(self) -> None:
+        """Frees the GPU's memory."""
+        for thing in (self.lit, self.shadow, *self.buffers):
+            thing.release()
+
+
+def packed(surfaces: tuple[Surface, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices (V,) of VERTEX and triangles (T, 3) uint32 of all surfaces together."""
+    vertices = np.zeros(sum(len(s.positions) for s in surfaces), VERTEX)
+    triangles = []
+    first = 0
+    for material, surface in enumerate(surfaces):
+        part = vertices[first : first + len(surface.positions)]
+        part["position"] = surface.positions
+        part["normal"] = surface.normals
+        part["weights"] = surface.weights
+        part["occlusion"] = surface.occlusion
+        part["joints"] = surface.joints
+        part["material"] = material
+        triangles.append(np.asarray(surface.triangles, np.uint32) + np.uint32(first))
+        first += len(surface.positions)
+    return vertices, np.concatenate(triangles)
+
+
+def materials(surfaces: tuple[Surface, ...]) -> tuple[bytes, bytes]:
+    """Colours (24, 4: linear rgb, roughness) and finishes (24, 4) as float32 bytes."""
+    if len(surfaces) > MOST_MATERIALS:
+        raise ValueError(f"a body has {len(surfaces)} materials; at most {MOST_MATERIALS} can be drawn")
+    colours = np.zeros((MOST_MATERIALS, 4), np.float32)
+    finishes = np.zeros((MOST_MATERIALS, 4), np.float32)
+    for row, surface in enumerate(surfaces):
+        colours[row] = (*surface.colour, surface.roughness)
+        finishes[row, :3] = FINISHES.get(surface.name, CLOTH)
+    return colours.tobytes(), finishes.tobytes()
+
+
+class BodyBuffers:
+    """Every body level that was drawn, the least recently drawn given up first beyond MOST_KEPT."""
+
+    def __init__(
+        self, context: moderngl.Context, lit_program: moderngl.Program, shadow_program: moderngl.Program
+    ) -> None:
+        self._context = context
+        self._programs = (lit_program, shadow_program)
+        self._kept: dict[tuple[int, int], BodyOnGpu] = {}
+        self.uploads = 0
+
+    def get(self, body: Body, level: int) -> BodyOnGpu:
+        """The level of the body, uploaded now if it is not there yet."""
+        key = (id(body), level)  # the body is kept in the value, so its id is not given to another one
+        found = self._kept.pop(key, None)
+        if found is None:
+            found = self._upload(body, level)
+            if len(self._kept) >= MOST_KEPT:
+                self._kept.pop(next(iter(self._kept))).release()
+        self._kept[key] = found
+        return found
+
+    def release(self) -> None:
+        """Frees the GPU's memory."""
+        for kept in self._kept.values():
+            kept.release()
+        self._kept.clear()
+
+    def _upload(self, body: Body, level: int) -> BodyOnGpu:
+        self.uploads += 1
+        surfaces = body.levels[level]
+        vertices, triangles = packed(surfaces)
+        vertex_buffer = self._context.buffer(vertices.tobytes())
+        index_buffer = self._context.buffer(triangles.tobytes())
+        lit, shadow = (
+            self._context.vertex_array(program, [(vertex_buffer, form, *names)], index_buffer)
+            for program, form, names in zip(
+                self._programs, (LIT_FORMAT, SHADOW_FORMAT), (LIT_NAMES, SHADOW_NAMES), strict=True
+            )
+        )
+        return BodyOnGpu(body, lit, shadow, (vertex_buffer, index_buffer), *materials(surfaces))

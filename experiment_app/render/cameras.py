@@ -1,0 +1,113 @@
+"""From a scene's camera to an eye and a view-projection matrix. Pure arithmetic: no GL, no state."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from experiment_app.scene import Camera, View
+from stimuli.skeleton import Floats
+
+NEAR = 0.1  # m
+FAR = 4000.0  # m, beyond where the haze has swallowed the ground
+
+AZIMUTHS: dict[View, float] = {"three_quarter": -40.0, "front": 0.0, "side": -90.0, "legs": -90.0}
+"""Degrees from the walking direction (+Z) towards the walker's left (+X), seen from the walker.
+
+The camera stands on the walker's right, so that the walker goes from left to right on the screen.
+Three-quarter is the canonical view of objects (Palmer, Rosch and Chase 1981; Blanz, Tarr and Bülthoff 1999).
+"""
+
+LEGS_TOP = 0.50  # of stature: the legs view ends here, just below the hips
+LEGS_MARGIN = 0.08  # of stature: ground shown below the soles in the legs view
+
+
+@dataclass(frozen=True, eq=False)
+class Viewpoint:
+    """A camera placed in the world.
+
+    eye:         (3,) m.
+    azimuth:     radians, direction from walker to eye around +Y, 0 along +Z, positive towards +X.
+    half_height: tangent of half the vertical field of view.
+    matrix:      (4, 4) world to clip space, column vectors (clip = matrix @ point).
+    """
+
+    eye: Floats
+    azimuth: float
+    half_height: float
+    matrix: Floats
+
+    def pixels_per_metre(self, point: Sequence[float], picture_height: int) -> float:
+        """Size on the screen of a metre at a point (x, y, z) m, roughly."""
+        distance = math.dist(self.eye, point)
+        return 0.5 * picture_height / (self.half_height * max(distance, NEAR))
+
+
+def place_camera(
+    camera: Camera, aspect: float, stature: float, walker: tuple[float, float, float]
+) -> Viewpoint:
+    """Put the camera so that the walker is centred vertically.
+
+    camera:  the scene's camera.
+    aspect:  width over height of the picture.
+    stature: m, of the walker looked at.
+    walker:  (x, y, z) m, where the walker is now. Every view keeps pace with the walker, which on a treadmill
+             means that it stands still.
+
+    The pitch is the mean of the elevation of crown and soles, so both have the same margin whatever the
+    distance, height or aspect ratio. In pictures taller than wide, the field of view is widened so that the
+    horizontal one is what it would be in a square; otherwise it is exactly what the scene asks for. Only the
+    legs view is narrower where that would show more than legs: it ends LEGS_TOP above and LEGS_MARGIN below.
+    """
+    azimuth = math.radians(AZIMUTHS[camera.view])
+    outwards = np.array([math.sin(azimuth), 0.0, math.cos(azimuth)])
+    eye = np.array([walker[0], walker[1] + camera.height, walker[2]]) + camera.distance * outwards
+    half_angle = math.radians(0.5 * camera.field_of_view)
+    top, bottom = stature, 0.0
+    if camera.view == "legs":
+        top, bottom = stature * LEGS_TOP, -stature * LEGS_MARGIN
+    above = math.atan2(top - camera.height, camera.distance)
+    below = math.atan2(bottom - camera.height, camera.distance)
+    if camera.view == "legs":
+        half_angle = min(half_angle, 0.5 * (above - below))
+    pitch = 0.5 * (above + below)
+    forward = np.array([0.0, math.sin(pitch), 0.0]) - math.cos(pitch) * outwards
+    half_height = math.tan(half_angle) / min(1.0, aspect)
+    matrix = perspective(half_height, aspect) @ look(eye, forward)
+    return Viewpoint(eye, azimuth, half_height, matrix)
+
+
+def look(eye: Floats, forward: Floats) -> Floats:
+    """(4, 4) world to eye space (-Z ahead, +Y up); forward: (3,), not vertical."""
+    forward = forward / np.linalg.norm(forward)
+    right = np.cross(forward, (0.0, 1.0, 0.0))
+    right /= np.linalg.norm(right)
+    rotation = np.stack([right, np.cross(right, forward), -forward])
+    matrix = np.eye(4)
+    matrix[:3, :3] = rotation
+    matrix[:3, 3] = -rotation @ eye
+    return matrix
+
+
+def perspective(half_height: float, aspect: float) -> Floats:
+    """(4, 4) eye to clip space; half_height: tangent of half the vertical field of view."""
+    matrix = np.zeros((4, 4))
+    matrix[0, 0] = 1.0 / (half_height * aspect)
+    matrix[1, 1] = 1.0 / half_height
+    matrix[2, 2] = (FAR + NEAR) / (NEAR - FAR)
+    matrix[2, 3] = 2.0 * FAR * NEAR / (NEAR - FAR)
+    matrix[3, 2] = -1.0
+    return matrix
+
+
+def orthographic(half_size: Floats) -> Floats:
+    """(4, 4) a centred box of half extents (x, y, z) m to clip space, -Z ahead."""
+    return np.diag([1.0 / half_size[0], 1.0 / half_size[1], -1.0 / half_size[2], 1.0])
+
+
+def as_uniform(matrix: Floats) -> bytes:
+    """The bytes GL wants for a mat4 or mat3: float32, column after column."""
+    return np.ascontiguousarray(matrix.T, dtype=np.float32).tobytes()

@@ -1,0 +1,102 @@
+"""Sun and sky: where the light comes from, how strong it is, and the box the shadow map covers. Pure arithmetic."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from experiment_app.render.cameras import look, orthographic
+from experiment_app.render.drawn import DrawnWalker
+from experiment_app.scene import Ground
+from stimuli.skeleton import Floats
+
+SUN_ELEVATION = math.radians(48.0)
+SUN_FROM_VIEW = math.radians(42.0)
+"""The sun stands to the right of and behind the viewer, whatever the view: walkers go to the right on the
+screen, so their faces are lit, and the shadow falls to the left behind them and never hides the feet."""
+
+CONSTANTS = {
+    "SUN_WIDTH": "0.045",  # penumbra radius (m) per metre between caster and receiver; the real sun's is 0.0047
+    "SEARCH_RADIUS": "0.045",  # m, also the widest penumbra
+    "SHARPEST": "0.005",  # m, the narrowest penumbra; about two texels of the shadow map
+    "SHADOW_OFFSET": "0.006",  # m along the normal, against a surface shadowing itself
+    "BLOCKER_TAPS": "16",
+    "SHADOW_TAPS": "40",
+}
+"""What the shaders' shadow code is compiled with."""
+
+ON_WALKERS = {**CONSTANTS, "BLOCKER_TAPS": "8", "SHADOW_TAPS": "14"}
+"""Fewer taps: shadows on clothes and skin are small and among folds, and triangles there are many."""
+
+
+@dataclass(frozen=True)
+class Lights:
+    """Linear light (red, green, blue) on a surface that faces the sun, the sky or the ground; 1: display white."""
+
+    sun: tuple[float, float, float]
+    sky: tuple[float, float, float]
+    bounce: tuple[float, float, float]
+
+
+LIGHTS: dict[Ground, Lights] = {
+    "open_ground": Lights(sun=(1.12, 1.05, 0.95), sky=(0.42, 0.46, 0.52), bounce=(0.25, 0.235, 0.21)),
+    "treadmill": Lights(sun=(0.92, 0.90, 0.86), sky=(0.58, 0.59, 0.60), bounce=(0.30, 0.295, 0.29)),
+}
+
+REACH = 0.66
+"""Radius of the ball round a walker's middle that holds the walker in any pose of walking, per stature."""
+
+MARGIN = 0.06  # m of shadow map round the casters, room for the soft edge
+
+
+@dataclass(frozen=True, eq=False)
+class Sunlight:
+    """The sun of one frame.
+
+    lights:        how strong sun, sky and ground are.
+    to_sun:        (3,) unit length.
+    world_to_clip: (4, 4) world to the clip space of the shadow map.
+    world_to_map:  (4, 4) world to the shadow map's x, y and depth, each in [0, 1].
+    extent:        (3,) m covered: width, height, depth.
+    """
+
+    lights: Lights
+    to_sun: Floats
+    world_to_clip: Floats
+    world_to_map: Floats
+    extent: Floats
+
+
+CLIP_TO_MAP = np.array([[0.5, 0, 0, 0.5], [0, 0.5, 0, 0.5], [0, 0, 0.5, 0.5], [0, 0, 0, 1.0]])
+
+
+def direction_to_sun(view_azimuth: float) -> Floats:
+    """(3,) unit vector; view_azimuth: radians, from the walker to the eye."""
+    azimuth = view_azimuth + SUN_FROM_VIEW
+    flat = math.cos(SUN_ELEVATION)
+    return np.array([flat * math.sin(azimuth), math.sin(SUN_ELEVATION), flat * math.cos(azimuth)])
+
+
+def fit_sunlight(
+    ground: Ground, view_azimuth: float, walkers: Sequence[DrawnWalker], corners: Floats
+) -> Sunlight:
+    """The sun, with the smallest upright box in its light that holds every walker and every corner point.
+
+    corners: (N, 3) m, other things that cast shadows, N may be 0.
+    """
+    to_sun = direction_to_sun(view_azimuth)
+    turn = look(np.zeros(3), -to_sun)
+    middles = np.array([(w.place[0], w.place[1] + 0.5 * w.body.stature, w.place[2]) for w in walkers])
+    reach = REACH * np.array([[walker.body.stature] for walker in walkers])
+    seen = middles @ turn[:3, :3].T
+    low, high = (seen - reach).min(axis=0), (seen + reach).max(axis=0)
+    if len(corners):
+        more = corners @ turn[:3, :3].T
+        low, high = np.minimum(low, more.min(axis=0)), np.maximum(high, more.max(axis=0))
+    low, high = low - MARGIN, high + MARGIN
+    turn[:3, 3] = -0.5 * (low + high)
+    world_to_clip = orthographic(0.5 * (high - low)) @ turn
+    return Sunlight(LIGHTS[ground], to_sun, world_to_clip, CLIP_TO_MAP @ world_to_clip, high - low)

@@ -1,0 +1,81 @@
+"""A scene of plain values to pixels: walkers on their ground, then the page of text over them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from experiment_app.render.drawn import DrawnWalker
+from experiment_app.render.pages import PagePainter
+from experiment_app.render.picture import Picture
+from experiment_app.render.stage import Stage
+from experiment_app.scene import Page, Scene
+
+
+class Renderer:
+    """Everything a window needs to show scenes.
+
+    size:        (width, height) of the target, pixels.
+    pixel_ratio: pixels per unit of a page's layout, 2 on most high-density screens.
+    samples:     wanted per pixel; `samples` tells what the driver gave.
+    """
+
+    def __init__(
+        self, context: moderngl.Context, size: tuple[int, int], pixel_ratio: float, samples: int
+    ) -> None:
+        self._picture = Picture(context, size, samples)
+        self._stage = Stage(context)
+        self._pages = PagePainter(context, size, pixel_ratio)
+        self._asked = (tuple(size), pixel_ratio)
+
+    @property
+    def samples(self) -> int:
+        """Samples per pixel, at most what the driver has; 1 is no multisampling."""
+        return self._picture.samples
+
+    @property
+    def uploads(self) -> int:
+        """How many body levels were uploaded to the GPU so far."""
+        return self._stage.uploads
+
+    def draw(self, scene: Scene, drawn: Sequence[DrawnWalker], target: moderngl.Framebuffer) -> None:
+        """Draws the scene over the whole target; drawn: scene.walkers in the same order, posed.
+
+        The same scene gives the same pixels on the same driver. Allocates nothing once a scene with as many
+        walkers of the same bodies was drawn.
+        """
+        if drawn:
+            self._picture.begin()
+            self._stage.draw(scene, drawn, self._picture.size)
+            self._picture.show(target)
+        else:
+            target.use()
+            target.viewport = (0, 0, *self._picture.size)
+        self._pages.draw(scene)
+
+    def resize(self, size: tuple[int, int], pixel_ratio: float) -> None:
+        """The target has a new size (pixels) or density; does nothing when neither has changed."""
+        if (tuple(size), pixel_ratio) == self._asked:
+            return
+        self._asked = (tuple(size), pixel_ratio)
+        self._picture.resize(size)
+        self._pages.resize(size, pixel_ratio)
+
+    def hit(self, page: Page, x: float, y: float) -> str | None:
+        """The id of the box of a page at a pixel (from the top left), or None."""
+        return self._pages.hit(page, x, y)
+
+    def read_pixels(self, target: moderngl.Framebuffer) -> NDArray[np.uint8]:
+        """(height, width, 3) sRGB codes of the target, top row first."""
+        width, height = self._picture.size
+        raw = target.read(viewport=(0, 0, width, height), components=3, alignment=1)
+        return np.frombuffer(raw, np.uint8).reshape(height, width, 3)[::-1].copy()
+
+    def release(self) -> None:
+        """Frees the GPU's memory."""
+        self._pages.release()
+        self._stage.release()
+        self._picture.release()

@@ -1,0 +1,17 @@
+#version 330 core
+// Linear light to sRGB codes (IEC 61966-2-1), with half a code of ordered noise so that the sky does not band.
+// The formula stands here because drivers' own encoding may be off by one code.
+uniform sampler2D linear_picture;
+layout(location = 0) out vec4 pixel;
+
+float noise(vec2 at) {
+    return fract(52.9829189 * fract(dot(at, vec2(0.06711056, 0.00583715))));
+}
+
+void main() {
+    vec3 light = clamp(texelFetch(linear_picture, ivec2(gl_FragCoord.xy), 0).rgb, 0.0, 1.0);
+    vec3 low = light * 12.92;
+    vec3 high = 1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055;
+    vec3 encoded = mix(high, low, vec3(lessThanEqual(light, vec3(0.0031308))));
+    pixel = vec4(encoded + (noise(gl_FragCoord.xy) - 0.5) * 0.9 / 255.0, 1.0);
+}

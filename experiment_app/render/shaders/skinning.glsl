@@ -1,0 +1,29 @@
+// Four-weight linear skinning. One row of `poses` per walker: 21 joints x 3 texels (rows of a 3x4 matrix), then
+// one texel with the walker's place. The same arithmetic as skin_matrices applied with NumPy.
+
+uniform sampler2D poses;
+uniform int first_walker;
+
+in vec3 position;
+in uvec4 joints;
+in vec4 weights;
+
+const int PLACE_TEXEL = 63;
+
+void blend_matrix(out vec4 x_row, out vec4 y_row, out vec4 z_row) {
+    int walker = first_walker + gl_InstanceID;
+    x_row = vec4(0.0);
+    y_row = vec4(0.0);
+    z_row = vec4(0.0);
+    for (int i = 0; i < 4; i++) {
+        int texel = int(joints[i]) * 3;
+        float weight = weights[i];
+        x_row += weight * texelFetch(poses, ivec2(texel, walker), 0);
+        y_row += weight * texelFetch(poses, ivec2(texel + 1, walker), 0);
+        z_row += weight * texelFetch(poses, ivec2(texel + 2, walker), 0);
+    }
+}
+
+vec3 walker_place() {
+    return texelFetch(poses, ivec2(PLACE_TEXEL, first_walker + gl_InstanceID), 0).xyz;
+}

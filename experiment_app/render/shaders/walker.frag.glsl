@@ -1,0 +1,64 @@
+#version 330 core
+#include "common.glsl"
+
+const int MOST_MATERIALS = 24;
+uniform vec4 colours[MOST_MATERIALS];   // linear rgb, roughness
+uniform vec4 finishes[MOST_MATERIALS];  // skin, sheen, specular strength, unused
+
+in vec3 world_position;
+in vec3 world_normal;
+centroid in float sky_seen;
+in vec2 sole;
+flat in int surface;
+
+layout(location = 0) out vec4 pixel;
+
+// Light that enters skin comes out past the terminator, red farthest (after Jimenez et al. 2015, simplified).
+vec3 diffuse_sun(float facing, float lit, float skin) {
+    vec3 wrap = skin * vec3(0.34, 0.16, 0.10);
+    vec3 bled = clamp((vec3(facing) + wrap) / ((1.0 + wrap) * (1.0 + wrap)), 0.0, 1.0);
+    vec3 softened = mix(vec3(lit), pow(vec3(lit), vec3(0.75, 1.0, 1.05)), skin);
+    return bled * softened;
+}
+
+// Microfacet highlight: GGX with the visibility fit of Lazarov 2011, dielectric reflectance 0.04.
+float highlight(vec3 normal, vec3 to_eye, vec3 to_light, float roughness) {
+    vec3 halfway = normalize(to_eye + to_light);
+    float alpha = roughness * roughness;
+    float n_h = max(dot(normal, halfway), 0.0);
+    float v_h = max(dot(to_eye, halfway), 0.0);
+    float spread = n_h * n_h * (alpha * alpha - 1.0) + 1.0;
+    float distribution = alpha * alpha / (PI * spread * spread);
+    float fresnel = 0.04 + 0.96 * pow(1.0 - v_h, 5.0);
+    return distribution * fresnel / (4.0 * mix(v_h * v_h, 1.0, alpha) + 0.0001);
+}
+
+void main() {
+    vec3 albedo = colours[surface].rgb;
+    float roughness = clamp(colours[surface].a, 0.2, 1.0);
+    vec4 finish = finishes[surface];
+
+    vec3 to_eye = normalize(eye - world_position);
+    vec3 normal = normalize(world_normal);
+    if (!gl_FrontFacing) normal = -normal;
+    float facing = dot(normal, to_sun);
+    float lit = sunlight(world_position, normal, facing > -0.34 * finish.x);
+
+    // The ground hides the lower half of the sky from what is close to it.
+    float height = max(sole.x, 0.0);
+    float above_ground = mix(0.62, 1.0, smoothstep(0.0, 0.35, height + 0.3 * max(normal.y, 0.0)));
+    float open = clamp(sky_seen, 0.0, 1.0) * above_ground;
+
+    vec3 light = sky_light(normal) * mix(vec3(open), pow(vec3(open), vec3(0.8, 1.0, 1.0)), finish.x);
+    light += sun_colour * diffuse_sun(facing, lit, finish.x) * mix(1.0, clamp(sky_seen, 0.0, 1.0), 0.35);
+    vec3 colour = albedo * light;
+
+    float grazing = pow(1.0 - max(dot(normal, to_eye), 0.0), 4.0);
+    colour += finish.y * grazing * open * sky_light(reflect(-to_eye, normal)) * mix(vec3(0.5), albedo, 0.7);
+    vec3 shine = sun_colour * PI * highlight(normal, to_eye, to_sun, roughness) * max(facing, 0.0) * lit;
+    float smoothness = (1.0 - roughness) * (1.0 - roughness);
+    shine += sky_light(reflect(-to_eye, normal)) * open * smoothness * (0.04 + 0.4 * grazing * smoothness);
+    colour += finish.z * shine;
+
+    pixel = vec4(fit_to_display(colour), 1.0);
+}

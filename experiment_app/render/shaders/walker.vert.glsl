@@ -1,0 +1,27 @@
+#version 330 core
+#include "skinning.glsl"
+
+uniform mat4 world_to_clip;
+
+in vec3 normal;
+in float occlusion;
+in uint material;
+
+out vec3 world_position;
+out vec3 world_normal;
+centroid out float sky_seen;
+out vec2 sole;              // metres above the walked surface, kept for contact darkening
+flat out int surface;
+
+void main() {
+    vec4 x_row, y_row, z_row;
+    blend_matrix(x_row, y_row, z_row);
+    vec4 bound = vec4(position, 1.0);
+    vec3 skinned = vec3(dot(x_row, bound), dot(y_row, bound), dot(z_row, bound));
+    world_normal = vec3(dot(x_row.xyz, normal), dot(y_row.xyz, normal), dot(z_row.xyz, normal));
+    world_position = skinned + walker_place();
+    sole = vec2(skinned.y, 0.0);
+    sky_seen = occlusion;
+    surface = int(material);
+    gl_Position = world_to_clip * vec4(world_position, 1.0);
+}

@@ -1,0 +1,174 @@
+"""From any skinned glTF person to a body with gaitlab's 21 joints: whose joint plays which role, and in what frame.
+
+The bind pose is taken from the inverse bind matrices, turned so that the person stands upright on y = 0 and looks
+along +Z, and brought to metres. A joint without a role (finger, twist, hair) moves with the nearest role above it.
+A role the file lacks takes a place between its neighbours and moves nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from stimuli.body_files.container import Container
+from stimuli.body_files.errors import BodyError
+from stimuli.body_files.scene import GltfScene, world_matrices
+from stimuli.motion_files.joint_names import NEEDED, roles_from_names
+from stimuli.motion_files.topology import roles_from_shape
+from stimuli.skeleton import JOINTS, PARENTS, Floats
+
+VRM_ROLES = {role.lower(): role for role in JOINTS}
+UNITS = (1.0, 0.01, 0.0254, 0.001, 10.0, 100.0)  # m per unit of the file, tried until the person is 0.5-3 m tall
+
+
+@dataclass(frozen=True, eq=False)
+class Humanoid:
+    """What was understood of a file's skeleton.
+
+    source:    how the roles were told: "VRM", the name of a table of joint names, or "shape".
+    roles:     role -> node index.
+    positions: (21, 3) m, joints in the bind pose.
+    to_person: (3, 4) from the file's bind space to metres, upright, facing +Z, sole on y = 0.
+    places:    (N,) per node the index in JOINTS it moves with.
+    """
+
+    source: str
+    roles: dict[str, int]
+    positions: Floats
+    to_person: Floats
+    places: Floats
+
+
+def understand(container: Container, scene: GltfScene, skin: int, bound: Floats, where: str) -> Humanoid:
+    """The person in a scene; `bound` (V, 3) are all its vertices in the bind pose, in the file's scene space."""
+    nodes = scene.nodes
+    parents = [node.parent for node in nodes]
+    binds = bind_matrices(scene, skin)
+    source, roles = _roles(container, scene, skin, binds, where)
+    missing = [role for role in NEEDED if role not in roles]
+    if missing:
+        raise BodyError(f"{where}: this is no person gaitlab can walk: no joint plays {', '.join(missing)}")
+    to_person = _upright(roles, binds, bound)
+    positions = _all_places(roles, binds, to_person)
+    return Humanoid(source, roles, positions, to_person, _carriers(roles, parents))
+
+
+def bind_matrices(scene: GltfScene, skin: int) -> Floats:
+    """(N, 4, 4) where every node stood when the skin was attached, in scene space as the file shows it.
+
+    For joints of the skin the inverse of the inverse bind matrix, brought to the scene by the first joint's place;
+    other nodes keep their place relative to their parent.
+    """
+    world = world_matrices(scene.nodes)
+    joints, inverse = scene.skins[skin].joints, scene.skins[skin].inverse_binds
+    scene_of_bind = world[joints[0]] @ inverse[0]
+    found = {int(j): scene_of_bind @ np.linalg.inv(b) for j, b in zip(joints, inverse, strict=True)}
+
+    def bound(index: int) -> Floats:
+        if index not in found:
+            parent = scene.nodes[index].parent
+            relative = world[index] if parent < 0 else np.linalg.inv(world[parent]) @ world[index]
+            found[index] = relative if parent < 0 else bound(parent) @ relative
+        return found[index]
+
+    return np.array([bound(i) for i in range(len(scene.nodes))])
+
+
+def _roles(container: Container, scene: GltfScene, skin: int, binds: Floats, where: str) -> tuple[str, dict[str, int]]:
+    names = [node.name for node in scene.nodes]
+    parents = [node.parent for node in scene.nodes]
+    told = _vrm_roles(container, len(names), where)
+    if all(role in told for role in NEEDED):
+        return "VRM", told
+    table, named = roles_from_names(names, parents)
+    if all(role in named for role in NEEDED):
+        return table, named
+    joints = [int(j) for j in scene.skins[skin].joints]
+    order = sorted(joints, key=lambda j: _depth(j, parents))
+    place = {joint: i for i, joint in enumerate(order)}
+    own_parents = [next((place[a] for a in _above(j, parents) if a in place), -1) for j in order]
+    shaped = roles_from_shape(own_parents, binds[order, :3, 3][None])
+    return "shape", {role: order[i] for role, i in shaped.items()}
+
+
+def _vrm_roles(container: Container, count: int, where: str) -> dict[str, int]:
+    """Roles as VRM 1.0 (an object) or VRM 0.x (a list) names them; upperChest counts as the chest."""
+    extensions = container.document.get("extensions", {})
+    try:
+        if "VRMC_vrm" in extensions:
+            pairs = [(role, bone["node"]) for role, bone in extensions["VRMC_vrm"]["humanoid"]["humanBones"].items()]
+        elif "VRM" in extensions:
+            pairs = [(bone["bone"], bone["node"]) for bone in extensions["VRM"]["humanoid"]["humanBones"]]
+        else:
+            return {}
+        found = {VRM_ROLES[role.lower()]: int(node) for role, node in pairs if role.lower() in VRM_ROLES}
+        found.update({"chest": int(node) for role, node in pairs if role.lower() == "upperchest"})
+    except (KeyError, TypeError, AttributeError, ValueError) as error:
+        raise BodyError(f"{where}: its VRM list of bones can't be read ({type(error).__name__})") from error
+    if any(not 0 <= node < count for node in found.values()):
+        raise BodyError(f"{where}: its VRM list of bones names nodes that do not exist")
+    return found
+
+
+def _upright(roles: dict[str, int], binds: Floats, bound: Floats) -> Floats:
+    """(3, 4) to metres, up = +Y, forwards = +Z, sole on the ground below the hips."""
+    at = {role: binds[node, :3, 3] for role, node in roles.items()}
+    feet = 0.5 * (at["leftFoot"] + at["rightFoot"])
+    rough = at.get("head", at.get("neck", at["hips"])) - feet
+    axis = int(np.argmax(np.abs(rough)))
+    up = np.eye(3)[axis] * np.sign(rough[axis])
+    left = at["leftUpperLeg"] - at["rightUpperLeg"]
+    left = left - up * (left @ up)
+    left /= np.linalg.norm(left)
+    turn = np.stack([left, up, np.cross(left, up)])
+    turned = bound @ turn.T
+    tall = float(np.ptp(turned[:, 1]))
+    unit = next((u for u in UNITS if 0.5 <= tall * u <= 3.0), 1.75 / max(tall, 1e-9))
+    hips = turn @ at["hips"] * unit
+    shift = -np.array([hips[0], unit * turned[:, 1].min(), hips[2]])
+    return np.column_stack([turn * unit, shift])
+
+
+def _all_places(roles: dict[str, int], binds: Floats, to_person: Floats) -> Floats:
+    known = {r: to_person[:, :3] @ binds[n, :3, 3] + to_person[:, 3] for r, n in roles.items()}
+    places = np.zeros((len(JOINTS), 3))
+    for joint, role in enumerate(JOINTS):
+        parent = places[PARENTS[joint]] if joint else np.zeros(3)
+        places[joint] = known[role] if role in known else parent + _guess(role, known, parent)
+    return places
+
+
+def _guess(role: str, known: Mapping[str, Floats], parent: Floats) -> Floats:
+    """Where a joint the file lacks stands, from its parent: half-way to the next one known, or a short way on."""
+    after = {"spine": "chest neck head", "chest": "neck head", "neck": "head"}
+    for following in after.get(role, "").split():
+        if following in known:
+            return 0.5 * (known[following] - parent)
+    if role.endswith("Toes"):
+        return np.array([0.0, -0.6 * parent[1], 0.13])
+    if role.endswith("Shoulder") and role.replace("Shoulder", "UpperArm") in known:
+        return 0.3 * (known[role.replace("Shoulder", "UpperArm")] - parent)
+    side = 1.0 if role.startswith("left") else -1.0 if role.startswith("right") else 0.0
+    return np.array([0.10 * side, 0.12 if side == 0 else 0.0, 0.0])
+
+
+def _carriers(roles: dict[str, int], parents: list[int]) -> Floats:
+    """Per node the place in JOINTS of the nearest role at or above it; the hips carry what hangs on nothing."""
+    role_of = {node: JOINTS.index(role) for role, node in roles.items()}
+    return np.array(
+        [next((role_of[n] for n in (node, *_above(node, parents)) if n in role_of), 0) for node in range(len(parents))]
+    )
+
+
+def _above(node: int, parents: list[int]) -> list[int]:
+    chain = []
+    while parents[node] >= 0:
+        node = parents[node]
+        chain.append(node)
+    return chain
+
+
+def _depth(node: int, parents: list[int]) -> int:
+    return len(_above(node, parents))

@@ -1,0 +1,247 @@
+"""Any glTF 2.0 scene as arrays: nodes, skins and meshes, and where the vertices are. Knows nothing of people.
+
+Vertices follow glTF 2.0 section 3.7.3: a skinned mesh ignores its node's own transform; joints take the place
+`world of the joint x inverse bind matrix`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from stimuli.body import Integers
+from stimuli.body_files.accessors import Array, item, read_accessor
+from stimuli.body_files.container import Container
+from stimuli.body_files.errors import BodyError
+from stimuli.skeleton import Floats
+
+MOST_JOINTS, MOST_TRIANGLES = 256, 500_000
+UNDERSTOOD = frozenset(
+    {
+        "KHR_mesh_quantization",
+        "KHR_materials_unlit",
+        "KHR_texture_transform",
+        "KHR_materials_pbrSpecularGlossiness",
+        "VRM",
+        "VRMC_vrm",
+    }
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """A node of the scene tree: parent (-1 for a root), local place as translation, rotation xyzw and scale.
+
+    matrix: (4, 4) local transform when the file gives one instead; it can't be animated.
+    """
+
+    name: str
+    parent: int
+    translation: Floats
+    rotation: Floats
+    scale: Floats
+    matrix: Floats | None
+    mesh: int | None
+    skin: int | None
+
+
+@dataclass(frozen=True, eq=False)
+class Skin:
+    """joints: (J,) node indices; inverse_binds: (J, 4, 4)."""
+
+    joints: Integers
+    inverse_binds: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Primitive:
+    """Vertices of one material: positions (V, 3) as stored, the mesh it belongs to, and, when it is skinned,
+    joints (V, K) as places in the skin's list and weights (V, K) summing to 1; triangles (T, 3)."""
+
+    mesh: int
+    material: int | None
+    positions: Floats
+    joints: Integers | None
+    weights: Floats | None
+    triangles: Integers
+
+
+@dataclass(frozen=True, eq=False)
+class GltfScene:
+    """What a file holds of geometry."""
+
+    nodes: tuple[Node, ...]
+    skins: tuple[Skin, ...]
+    primitives: tuple[Primitive, ...]
+
+
+def read_scene(container: Container, where: str) -> GltfScene:
+    """All nodes, skins and triangle meshes of a file, or a sentence saying why it can't be shown."""
+    document = container.document
+    strange = sorted(set(map(str, document.get("extensionsRequired", []))) - UNDERSTOOD)
+    if strange:
+        raise BodyError(f"{where}: it needs {', '.join(strange)}, which gaitlab can't read; re-export without it")
+    try:
+        nodes = _nodes(document, where)
+        skins = tuple(_skin(container, skin, len(nodes), where) for skin in document.get("skins", []))
+        primitives = tuple(
+            _primitive(container, m, primitive, where)
+            for m, mesh in enumerate(document.get("meshes", []))
+            for primitive in mesh["primitives"]
+            if primitive.get("mode", 4) == 4
+        )
+    except (KeyError, IndexError, TypeError, AttributeError, ValueError, OverflowError) as error:
+        if isinstance(error, BodyError):
+            raise
+        raise BodyError(f"{where}: the file breaks glTF's own rules ({type(error).__name__}: {error})") from error
+    total = sum(len(p.triangles) for p in primitives)
+    if total > MOST_TRIANGLES:
+        raise BodyError(f"{where}: it has {total} triangles, more than {MOST_TRIANGLES}; simplify it first")
+    return GltfScene(nodes, skins, primitives)
+
+
+def local_matrix(node: Node) -> Floats:
+    """(4, 4) from the node's frame to its parent's."""
+    if node.matrix is not None:
+        return node.matrix
+    x, y, z, w = node.rotation / max(float(np.linalg.norm(node.rotation)), 1e-12)
+    matrix = np.eye(4)
+    matrix[:3, :3] = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    matrix[:3, :3] *= node.scale
+    matrix[:3, 3] = node.translation
+    return matrix
+
+
+def world_matrices(nodes: tuple[Node, ...]) -> Floats:
+    """(N, 4, 4) from every node's frame to the scene's."""
+    found: dict[int, Floats] = {}
+
+    def world(index: int) -> Floats:
+        if index not in found:
+            node = nodes[index]
+            found[index] = local_matrix(node) if node.parent < 0 else world(node.parent) @ local_matrix(node)
+        return found[index]
+
+    return np.array([world(i) for i in range(len(nodes))]).reshape(-1, 4, 4)
+
+
+def placed_vertices(scene: GltfScene) -> Floats:
+    """(V, 3) all vertices of all meshes where the scene shows them, in metres as the file says."""
+    world = world_matrices(scene.nodes)
+    parts: list[Floats] = []
+    for index, node in enumerate(scene.nodes):
+        for primitive in scene.primitives:
+            if primitive.mesh != node.mesh:
+                continue
+            points = np.column_stack([primitive.positions, np.ones(len(primitive.positions))])
+            if node.skin is not None and primitive.joints is not None and primitive.weights is not None:
+                skin = scene.skins[node.skin]
+                matrices = world[skin.joints] @ skin.inverse_binds
+                blended = np.einsum("vk,vkij->vij", primitive.weights, matrices[primitive.joints])
+                parts.append(np.einsum("vij,vj->vi", blended, points)[:, :3])
+            else:
+                parts.append((points @ world[index].T)[:, :3])
+    return np.concatenate(parts) if parts else np.zeros((0, 3))
+
+
+def _nodes(document: dict[str, Any], where: str) -> tuple[Node, ...]:
+    raw = document.get("nodes", [])
+    parents = [-1] * len(raw)
+    for parent, node in enumerate(raw):
+        for child in node.get("children", []):
+            if parents[child] >= 0 or child == parent:
+                raise BodyError(f"{where}: node {child} has two parents")
+            parents[child] = parent
+    for start in range(len(raw)):
+        at, steps = start, 0
+        while at >= 0:
+            at, steps = parents[at], steps + 1
+            if steps > len(raw) or steps > 500:
+                raise BodyError(f"{where}: its nodes are each other's parents, or nested more than 500 deep")
+    found = []
+    for index, node in enumerate(raw):
+        matrix = _numbers(node["matrix"], 16, where).reshape(4, 4).T if "matrix" in node else None
+        found.append(
+            Node(
+                name=str(node.get("name", "")),
+                parent=parents[index],
+                translation=_numbers(node.get("translation", (0, 0, 0)), 3, where),
+                rotation=_numbers(node.get("rotation", (0, 0, 0, 1)), 4, where),
+                scale=_numbers(node.get("scale", (1, 1, 1)), 3, where),
+                matrix=matrix,
+                mesh=node.get("mesh"),
+                skin=node.get("skin"),
+            )
+        )
+    for node in found:
+        if node.skin is not None:
+            item(Container(document, ()), "skins", node.skin, where)
+    return tuple(found)
+
+
+def _numbers(values: Any, count: int, where: str) -> Floats:
+    numbers = np.array([float(v) for v in values])
+    if numbers.shape != (count,) or not np.all(np.isfinite(numbers)):
+        raise BodyError(f"{where}: a node's transform is not {count} finite numbers")
+    return numbers
+
+
+def _skin(container: Container, skin: dict[str, Any], nodes: int, where: str) -> Skin:
+    joints = np.array(skin["joints"], dtype=np.int64)
+    if joints.ndim != 1 or len(joints) == 0 or joints.min() < 0 or joints.max() >= nodes:
+        raise BodyError(f"{where}: a skin names joints that do not exist")
+    if len(joints) > MOST_JOINTS:
+        raise BodyError(f"{where}: a skin has {len(joints)} joints, more than {MOST_JOINTS}")
+    binds = np.tile(np.eye(4), (len(joints), 1, 1))
+    if "inverseBindMatrices" in skin:
+        stored = read_accessor(container, skin["inverseBindMatrices"], where)
+        if stored.shape[1] != 16 or len(stored) < len(joints) or not np.all(np.isfinite(stored)):
+            raise BodyError(f"{where}: a skin's inverse bind matrices are too few or not usable")
+        binds = stored[: len(joints)].astype(np.float64).reshape(-1, 4, 4).transpose(0, 2, 1)
+    return Skin(joints, binds)
+
+
+def _primitive(container: Container, mesh: int, primitive: dict[str, Any], where: str) -> Primitive:
+    attributes = primitive["attributes"]
+    positions = read_accessor(container, attributes.get("POSITION"), where).astype(np.float64)
+    if positions.shape[1] != 3 or not np.all(np.isfinite(positions)):
+        raise BodyError(f"{where}: a mesh has positions that are not finite")
+    indices = np.arange(len(positions) // 3 * 3)
+    if "indices" in primitive:
+        indices = read_accessor(container, primitive["indices"], where).ravel().astype(np.int64)
+    if len(indices) % 3 or (len(indices) and int(indices.max()) >= len(positions)):
+        raise BodyError(f"{where}: a mesh has triangles that name vertices which do not exist")
+    joints, weights = _influences(container, attributes, len(positions), where)
+    material = primitive.get("material")
+    return Primitive(mesh, material, positions, joints, weights, indices.reshape(-1, 3))
+
+
+def _influences(
+    container: Container, attributes: dict[str, Any], count: int, where: str
+) -> tuple[Integers | None, Floats | None]:
+    """Joints and weights of all sets, normalised; a vertex without any weight hangs on its skin's first joint."""
+    sets = [n for n in range(8) if f"JOINTS_{n}" in attributes and f"WEIGHTS_{n}" in attributes]
+    if not sets:
+        return None, None
+    joints = np.hstack([_rows(container, attributes[f"JOINTS_{n}"], count, where) for n in sets]).astype(np.int64)
+    weights = np.hstack([_rows(container, attributes[f"WEIGHTS_{n}"], count, where) for n in sets]).astype(np.float64)
+    if not np.all(np.isfinite(weights)) or np.any(weights < 0):
+        raise BodyError(f"{where}: a mesh has weights that are negative or not finite")
+    total = weights.sum(axis=1, keepdims=True)
+    weights[total[:, 0] == 0, 0] = 1
+    joints[total[:, 0] == 0, 0] = 0
+    joints = np.where(weights > 0, joints, 0)
+    return joints, weights / weights.sum(axis=1, keepdims=True)
+
+
+def _rows(container: Container, accessor: Any, count: int, where: str) -> Array:
+    values = read_accessor(container, accessor, where)
+    if values.shape != (count, 4):
+        raise BodyError(f"{where}: joints or weights of a mesh do not match its vertices")
+    return values
