@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from scipy import special, stats
 
+from analysis.apa import figures
 from analysis.cells import CellMeans, Levels, cell_means
 from analysis.columns import labels, numbers, require
 from analysis.errors import AnalysisError
@@ -162,7 +163,7 @@ def _slope_test(check: str, slopes: np.ndarray, span: float, predictor: str, wha
     t = float(slopes.mean() / (slopes.std(ddof=1) / np.sqrt(n)))
     return row | {
         "statistic": t, "df1": 1, "df2": n - 1, "p": float(2 * special.stdtr(n - 1, -abs(t))),
-        "note": f"{what} {slopes.mean() * span:.4g}",
+        "note": f"{what} {figures(float(slopes.mean() * span))}",
     }  # fmt: skip
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from analysis.apa import MINUS, degrees, number, p_value, share
+from analysis.apa import degrees, number, p_value, share
 from analysis.errors import listed
 from analysis.results import ALPHA, PlannedResults
 
@@ -142,7 +142,7 @@ def other_checks(results: PlannedResults) -> list[str]:
         for row in table[(table["check"] == check) & table["p"].notna()].to_dict("records"):
             verdict = "found" if row["p"] < ALPHA else "not found"
             found.append(
-                f"{name}: {verdict}, {row['note'].replace('-', MINUS)}{unit}, t({degrees(row['df2'])}) = "
+                f"{name}: {verdict}, {row['note']}{unit}, t({degrees(row['df2'])}) = "
                 f"{number(row['statistic'])}, {p_value(row['p'])}."
             )
     return found

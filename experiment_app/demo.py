@@ -54,7 +54,8 @@ def run_demo(folder: Path, *, off_screen: bool, say: Callable[[str], None], prog
         pictures = _watch_simulated(study, folder)
         say(f"  pages and a trial: {', '.join(p.name for p in pictures)} in {folder / 'pictures'}")
         say(f"  film of a trial:   {film_trial(study, folder / 'pictures')}")
-    for _ in progress(simulate(study, PARTICIPANTS, folder / "data", SEED), PARTICIPANTS, "Simulating participants"):
+    runs = simulate(study, PARTICIPANTS, folder / "data", SEED)
+    for _ in progress(runs, PARTICIPANTS, "Simulating participants"):
         pass
     say(f"{PARTICIPANTS} simulated participants: {folder / 'data' / study.study.study}")
     outcome = analyse(folder / "data" / study.study.study, folder / "report")
@@ -113,7 +114,8 @@ def _take_part(folder: Path, say: Callable[[str], None]) -> None:
     file.write_text(short_study().text, encoding="utf-8")
     try:
         run_live(
-            str(file), "YOU", folder / "your-data", full_screen=False, size=(1280, 720), display=1, refresh=0.0, seed=None,
+            str(file), "YOU", folder / "your-data", full_screen=False, size=(1280, 720), display=1, refresh=0.0,
+            seed=None,
             new_run=False, resume="no", ask=lambda _: False, say=say,
         )  # fmt: skip
     except RunError as error:

@@ -106,9 +106,9 @@ def _range(study: Study) -> Iterator[Mistake]:
             if isinstance(level, (int, float)) and not reach.minimum <= level <= reach.maximum:
                 yield Mistake(("factors", start[1:], i), f"{level} is {inside}")
         for i, trial in enumerate(study.practice):
-            level = trial.levels.get(start[1:])
-            if isinstance(level, (int, float)) and not reach.minimum <= level <= reach.maximum:
-                yield Mistake(("practice", i, start[1:]), f"{level} is {inside}")
+            given = trial.levels.get(start[1:])
+            if isinstance(given, (int, float)) and not reach.minimum <= given <= reach.maximum:
+                yield Mistake(("practice", i, start[1:]), f"{given} is {inside}")
     elif not reach.minimum <= start <= reach.maximum:
         yield Mistake(("task", "start"), f"{start:g} is {inside}")
     keys = study.task.keys
@@ -161,9 +161,9 @@ def _planned_analysis(study: Study) -> Iterator[Mistake]:
                 yield Mistake(("analysis", "t_tests", i, "against", level), message, on_key=True)
     labels = [test.label for test in plan.t_tests]
     for i, figure in enumerate(plan.figures):
-        for field, name in (("x", figure.x), ("lines", figure.lines)):
-            if name is not None and name not in within + between:
-                yield Mistake(("analysis", "figures", i, field), _unknown(name, within + between, "factor"))
+        for field, factor in (("x", figure.x), ("lines", figure.lines)):
+            if factor is not None and factor not in within + between:
+                yield Mistake(("analysis", "figures", i, field), _unknown(factor, within + between, "factor"))
         if figure.kind == "interaction" and figure.lines is None:
             yield Mistake(("analysis", "figures", i), "an interaction needs lines: the factor drawn as lines")
         if figure.reference is not None and figure.reference not in labels:

@@ -108,8 +108,9 @@ def handle(session: Session, event: Event) -> Session:
     if isinstance(event, Closed):
         return _ended(session, event.time, event.reason)
     if isinstance(event, Saved):
-        saved = isinstance(session.stage, Interval)
-        return replace(session, stage=replace(session.stage, saved=True)) if saved else session  # type: ignore[type-var]
+        if not isinstance(session.stage, Interval):
+            return session
+        return replace(session, stage=replace(session.stage, saved=True))
     if isinstance(event, Shown):
         return _seen(session, event)
     session = advance(session, event.time)

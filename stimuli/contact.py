@@ -28,7 +28,7 @@ FLAT_ZONE = np.radians(4.0)
 TOE_BEND_LIMIT = np.radians(42.0)
 """Extension of the toes at push-off before they leave the ground, rad (Bojsen-Moller & Lamoreux 1979: about 40-50)."""
 
-ARRIVAL = 0.96
+ARRIVAL = 0.99
 """Share of swing after which the foot comes straight down on its footprint."""
 
 TOE_BEND_SOFTNESS = np.radians(4.0)

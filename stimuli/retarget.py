@@ -24,12 +24,14 @@ from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
 
 SAMPLES = 256
 PHASES = np.arange(SAMPLES) / SAMPLES
+SMOOTHING = 6  # samples each way
+CLOSING = 0.06
 
 MIRRORED_FOOT = np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0])
 """Sign of each of the FOOT_CHANNELS for the other side."""
 
-BUILT_REACH = 0.9975
-"""Largest hip-ankle distance over leg length in a cycle as built (a knee bent by 2.3 degrees); blending needs the rest."""
+BUILT_REACH = 0.9994
+"""Largest hip-ankle distance over leg length in a cycle as built (a knee bent by 4 degrees); blending needs the rest."""
 
 SWING_GAIN = (0.8, 1.35)
 """How much less or more than captured the stance leg may swing to make a step of the wanted length."""
@@ -143,10 +145,7 @@ def _pushed_off(sole: Sole, foot: _Foot, vector: Floats, hip_up: Floats, behind:
     late = contact.smooth_step((PHASES - 0.36) / 0.1) * contact.smooth_step((foot.stance + 0.1 - PHASES) / 0.1)
     end = int(np.searchsorted(PHASES, foot.stance - 0.01))
     held = np.where(PHASES < PHASES[end], best, best[end])
-    width = SAMPLES // 32
-    kernel = np.hanning(2 * width + 1) / np.hanning(2 * width + 1).sum()
-    smooth = np.convolve(np.pad(held, width, mode="edge"), kernel, mode="valid")
-    return _Foot.pitched(sole, drawn + late * smooth, foot.yaw, foot.knee_yaw, foot.side, foot.stance)
+    return _Foot.pitched(sole, drawn + late * _smoothed(held), foot.yaw, foot.knee_yaw, foot.side, foot.stance)
 
 
 def _upper_body(figure: Figure, coefficients: Floats) -> tuple[Floats, Floats]:
@@ -261,6 +260,7 @@ def _foot_channels(
     sideways = on_clock(foot.ankle[:, 0] - hip[:, 0])
     far = np.sqrt(np.maximum(reach**2 - up**2 - sideways**2, 0.0))
     places = [(on_clock(hip[:, 2]) + sign * far - rolled) / stride - course for sign in (-1.0, 1.0)]
+    travel = _smoothed(np.where(swing > 0.0, np.clip(travel, *places), 0.0)) * _swing_window(swing)
     travel = np.where(swing > 0.0, np.clip(travel, *places), 0.0)
     channels = {
         "pitch": on_clock(foot.pitch),
@@ -286,7 +286,14 @@ def _still_in_stance(values: Floats, stance: float) -> Floats:
 
 def _swing_window(progress: Floats) -> Floats:
     """0 in stance, 1 in mid swing, without a jump in velocity or acceleration."""
-    return np.asarray(contact.smooth_step(progress / 0.12) * contact.smooth_step((contact.ARRIVAL - progress) / 0.25))
+    return np.asarray(contact.smooth_step(progress / 0.12) * contact.smooth_step((contact.ARRIVAL - progress) / CLOSING))
+
+
+def _smoothed(values: Floats) -> Floats:
+    """A periodic curve (N,) averaged over 3 per cent of the cycle, which takes corners off."""
+    kernel = np.hanning(2 * SMOOTHING + 1)
+    padded = np.concatenate([values[-SMOOTHING:], values, values[:SMOOTHING]])
+    return np.convolve(padded, kernel / kernel.sum(), mode="valid")
 
 
 def _soft_positive(values: Floats, width: float = 0.002) -> Floats:

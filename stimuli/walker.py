@@ -76,12 +76,13 @@ def drawn_pose(actor: Actor, speed: float, step_frequency: float, phase: float) 
 
 @dataclass(frozen=True, eq=False)
 class _Foot:
-    """ankle m in the walker's frame; turn (3, 3) world rotation; bend of the toes and yaw of the knee rad."""
+    """ankle m in the walker's frame; turn (3, 3) world rotation; bend of the toes, yaw of the knee rad; clearance m."""
 
     ankle: tuple[float, float, float]
     turn: Floats
     bend: float
     knee_yaw: float
+    clearance: float
 
 
 def _placed_foot(sole: Sole, channels: Floats, clock: float, place: float, stride: float) -> _Foot:
@@ -93,19 +94,20 @@ def _placed_foot(sole: Sole, channels: Floats, clock: float, place: float, strid
     cosine, sine = math.cos(yaw), math.sin(yaw)
     ankle = (side + sine * forward, up + clearance, place + stride * travel + cosine * forward)
     heading = np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
-    return _Foot(ankle, heading @ _toes_up(pitch), bend, knee_yaw)
+    return _Foot(ankle, heading @ _toes_up(pitch), bend, knee_yaw, clearance)
 
 
 def _lowering(legs: Sequence[Leg], hips: Floats, sockets: Sequence[Floats], feet: Sequence[_Foot]) -> float:
     """m by which the hips come down so that both legs reach their feet; a soft maximum, so without a kink.
 
-    Cycles are built so that legs reach; this takes up the last millimetres between them.
+    Cycles are built so that legs reach; this takes up the last millimetres between them. A foot in the air may hang
+    higher instead, by its clearance.
     """
     lowering = 0.0
     for leg, socket, foot in zip(legs, sockets, feet, strict=True):
         x, y, z = (hips + socket).tolist()
         room = (STRAIGHTEST * leg.length) ** 2 - (foot.ankle[0] - x) ** 2 - (foot.ankle[2] - z) ** 2
-        excess = (y - foot.ankle[1] - math.sqrt(max(room, 0.0))) / LOWERING_SOFTNESS
+        excess = (y - foot.ankle[1] - math.sqrt(max(room, 0.0)) - foot.clearance) / LOWERING_SOFTNESS
         lowering += LOWERING_SOFTNESS * (math.log1p(math.exp(excess)) if excess < 30.0 else excess)
     return lowering
 

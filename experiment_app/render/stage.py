@@ -44,7 +44,7 @@ class Stage:
         first = drawn[0]
         viewpoint = place_camera(scene.camera, width / height, first.body.stature, first.place)
         on_treadmill = scene.ground == "treadmill"
-        machine = (*_middle(scene),)
+        machine = _middle(scene)
         casters = corners(machine) if on_treadmill else NOTHING
         sunlight = fit_sunlight(scene.ground, viewpoint.azimuth, drawn, casters)
         self._walkers.place(drawn, viewpoint, height)
@@ -56,7 +56,6 @@ class Stage:
 
         picture.use()
         self._shadows.bind()
-        self._context.enable_only(moderngl.DEPTH_TEST)
         self._walkers.draw(viewpoint, sunlight)
         if on_treadmill:
             ground, treadmill = self._treadmill()

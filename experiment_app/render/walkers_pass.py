@@ -84,7 +84,8 @@ class WalkersPass:
             batch.body.shadow.render(moderngl.TRIANGLES, instances=batch.count)
 
     def draw(self, viewpoint: Viewpoint, sunlight: Sunlight) -> None:
-        """Draws all walkers into the bound framebuffer."""
+        """Draws all walkers into the bound framebuffer; insides of clothes are left out."""
+        self._context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         self._use(self._lit)
         self._lit["world_to_clip"].write(as_uniform(viewpoint.matrix))
         set_light(self._lit, sunlight, viewpoint.eye)

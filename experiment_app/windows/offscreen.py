@@ -21,7 +21,8 @@ from protocols.session import Session
 def offscreen_context() -> moderngl.Context:
     """An OpenGL 3.3 context without a window; raises UsageError with the way out when there is none."""
     problems = []
-    for settings in ({"backend": "egl"}, {}):
+    choices: tuple[dict[str, Any], ...] = ({"backend": "egl"}, {})
+    for settings in choices:
         try:
             return moderngl.create_context(standalone=True, require=330, **settings)
         except Exception as error:  # glcontext raises bare Exceptions

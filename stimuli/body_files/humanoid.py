@@ -104,7 +104,8 @@ def _vrm_roles(container: Container, count: int, where: str) -> dict[str, int]:
         else:
             return {}
         found = {VRM_ROLES[role.lower()]: int(node) for role, node in pairs if role.lower() in VRM_ROLES}
-        found.update({"chest": int(node) for role, node in pairs if role.lower() == "upperchest"})
+        upper = [int(node) for role, node in pairs if role.lower() == "upperchest"]
+        found |= {"chest": upper[0]} if upper else {}
     except (KeyError, TypeError, AttributeError, ValueError) as error:
         raise BodyError(f"{where}: its VRM list of bones can't be read ({type(error).__name__})") from error
     if any(not 0 <= node < count for node in found.values()):

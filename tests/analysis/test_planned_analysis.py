@@ -215,3 +215,37 @@ def test_tables_for_latex_escape_what_latex_would_read(analysed: tuple[Path, Pat
     assert r"actor $\times$ speed & " in text
     assert text.count(r"\begin{table}") == text.count(r"\end{table}") >= 2
     assert escaped("50 % of a_b & −1 {x}") == r"50 \% of a\_b \& $-$1 \{x\}"
+
+
+PLANS = {
+    "one between factor": """
+  anova: {within: [], between: [sex]}
+  t_tests: []
+  figures: [{kind: means, x: sex}]
+""",
+    "within only, nothing else": """
+  anova: {within: [actor], between: []}
+  post_hoc: null
+  normality: null
+  figures: [{kind: means, x: actor}, {kind: interaction, x: actor, lines: speed}]
+""",
+    "between on the x axis": """
+  anova: {within: [speed, actor], between: [sex]}
+  post_hoc: {adjust: holm, model: univariate}
+  figures: [{kind: interaction, x: sex, lines: actor}, {kind: interaction, x: speed, lines: actor}]
+""",
+}
+
+
+@pytest.mark.parametrize("name", PLANS)
+def test_other_plans_than_the_thesis_run_as_well(name: str, tmp_path: Path) -> None:
+    head, _, rest = study_text().partition("\nanalysis:")
+    tail = rest[rest.index("# Simulated observers") :]
+    text = f"{head}\nanalysis:\n  measure: response_time\n  label: Response time\n  unit: s{PLANS[name]}\n{tail}"
+    outcome = analyse(write_study(tmp_path / "s", 7, text), tmp_path / "out")
+    page = outcome.report.read_text(encoding="utf-8")
+    assert "Response time" in page
+    assert "nan" not in page.replace("nant", "")
+    drawn = [path for path in outcome.paths if path.suffix == ".png"]
+    assert len(drawn) == (2 if "x axis" in name else 1)
+    assert any("figure was not drawn" in w for w in outcome.warnings) == (name == "within only, nothing else")

@@ -126,6 +126,7 @@ def test_analysing_nothing_is_a_sentence(tmp_path, capfd):
 
 
 def test_help_does_not_import_the_heavy_rooms():
-    code = "import sys, experiment_app.command; print([m for m in ('pandas','moderngl','scipy','numpy') if m in sys.modules])"
+    heavy = "('pandas', 'moderngl', 'scipy', 'numpy')"
+    code = f"import sys, experiment_app.command; print([m for m in {heavy} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.strip() == "[]"

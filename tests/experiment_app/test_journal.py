@@ -17,7 +17,7 @@ from experiment_app.errors import RunError, UsageError
 from experiment_app.run_folder import journal_lines, participant_runs
 from protocols.design import conditions
 from tests.experiment_app.sessions import opened, play
-from tests.protocols.studies import short, shipped_text
+from tests.protocols.studies import shipped_text, short
 
 
 def trials(lines) -> list[int]:

@@ -40,7 +40,6 @@ void main() {
 
     vec3 to_eye = normalize(eye - world_position);
     vec3 normal = normalize(world_normal);
-    if (!gl_FrontFacing) normal = -normal;
     float facing = dot(normal, to_sun);
     float lit = sunlight(world_position, normal, facing > -0.34 * finish.x);
 

@@ -1,0 +1,186 @@
+"""What the renderer draws: equal for equal scenes, the walker inside the frame, feet that darken the ground."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import moderngl
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from experiment_app.render.cameras import place_camera
+from experiment_app.render.renderer import Renderer
+from experiment_app.scene import Camera, Ground, Scene, View, Walker
+from experiment_app.walkers import cast, drawn_walkers
+from stimuli.skinning import skin
+
+SIZE = (320, 180)
+WALKER = Walker("F1", 1.2, 105.0, 0.3, distance=4.7)
+VIEWS: tuple[View, ...] = ("three_quarter", "side", "front", "legs")
+
+
+@pytest.fixture(scope="module")
+def context() -> Iterator[moderngl.Context]:
+    try:
+        made = moderngl.create_context(standalone=True, backend="egl", require=330)
+    except Exception as error:  # glcontext raises bare Exceptions
+        pytest.skip(f"no OpenGL 3.3 through EGL on this machine: {error}")
+    yield made
+    made.release()
+
+
+@pytest.fixture(scope="module")
+def renderer(context: moderngl.Context) -> Iterator[Renderer]:
+    made = Renderer(context, SIZE, 1.0, 4)
+    yield made
+    made.release()
+
+
+def picture(context: moderngl.Context, renderer: Renderer, scene: Scene) -> NDArray[np.uint8]:
+    renderer.resize(SIZE, 1.0)
+    target = context.simple_framebuffer(SIZE)
+    renderer.draw(scene, drawn_walkers(scene), target)
+    pixels = renderer.read_pixels(target)
+    target.release()
+    return pixels
+
+
+@pytest.mark.parametrize("ground", ["open_ground", "treadmill"])
+def test_equal_scenes_give_equal_bytes(context: moderngl.Context, renderer: Renderer, ground: Ground) -> None:
+    scene = Scene((WALKER,), ground=ground)
+    first = picture(context, renderer, scene)
+    picture(context, renderer, Scene((replace(WALKER, phase=0.7),), Camera("side")))
+    again = picture(context, renderer, scene)
+    other = Renderer(context, SIZE, 1.0, 4)
+    fresh = picture(context, other, scene)
+    other.release()
+    assert np.array_equal(first, again)
+    assert np.array_equal(first, fresh)
+
+
+def test_a_body_is_uploaded_once(context: moderngl.Context) -> None:
+    renderer = Renderer(context, SIZE, 1.0, 1)
+    for phase in (0.0, 0.2, 0.4):
+        picture(context, renderer, Scene((replace(WALKER, phase=phase),)))
+    assert renderer.uploads == 1
+    picture(context, renderer, Scene((WALKER, replace(WALKER, place=(0.8, 0.0), phase=0.1))))
+    assert renderer.uploads == 1
+    picture(context, renderer, Scene((replace(WALKER, actor="M1"),)))
+    assert renderer.uploads == 2
+    renderer.release()
+
+
+def test_samples_are_brought_down_to_what_the_driver_has(context: moderngl.Context) -> None:
+    renderer = Renderer(context, SIZE, 1.0, 64)
+    assert 1 <= renderer.samples <= context.max_samples
+    assert picture(context, renderer, Scene((WALKER,))).std() > 5.0
+    renderer.release()
+
+
+def test_many_walkers_are_drawn_at_their_places(context: moderngl.Context, renderer: Renderer) -> None:
+    """Twelve walkers, more than the textures first hold, leave marks where each stands, of two bodies."""
+    camera = Camera("front", distance=9.0)
+    empty_side = Scene((WALKER,), camera)
+    walkers = [WALKER] + [
+        replace(WALKER, actor=("F1", "M1")[i % 2], place=(0.6 * (i - 5.5) + 0.1, -0.8), phase=i / 12)
+        for i in range(11)
+    ]
+    alone, together = picture(context, renderer, empty_side), picture(context, renderer, Scene(tuple(walkers), camera))
+    changed = np.abs(alone.astype(int) - together).max(axis=2) > 40
+    columns = changed.any(axis=0).nonzero()[0]
+    assert changed.sum() > 1500
+    assert columns[-1] - columns[0] > 150
+
+
+def test_resize_changes_the_picture_and_its_pixels(context: moderngl.Context) -> None:
+    renderer = Renderer(context, (160, 120), 1.0, 4)
+    scene = Scene((WALKER,))
+    for size in ((160, 120), (400, 200), (160, 120)):
+        target = context.simple_framebuffer(size)
+        renderer.resize(size, 1.0)
+        renderer.draw(scene, drawn_walkers(scene), target)
+        assert renderer.read_pixels(target).shape == (size[1], size[0], 3)
+        assert renderer.read_pixels(target).std() > 5.0
+        target.release()
+    renderer.release()
+
+
+@pytest.mark.parametrize("aspect", [4 / 3, 16 / 9, 21 / 9])
+@pytest.mark.parametrize("view", ["three_quarter", "side", "front"])
+@pytest.mark.parametrize("actor", ["F1", "M1"])
+def test_the_whole_walker_is_inside_the_frame_and_centred(view: View, aspect: float, actor: str) -> None:
+    """Every vertex at 8 phases is at least 5 % of the picture away from its edges; equal margins above and below."""
+    camera = Camera(view)
+    top, bottom, sides = -1.0, 1.0, 0.0
+    for phase in np.arange(8) / 8:
+        (drawn,) = drawn_walkers(Scene((replace(WALKER, actor=actor, phase=float(phase), distance=31.0),)))
+        viewpoint = place_camera(camera, aspect, drawn.body.stature, drawn.place)
+        points = np.concatenate([skin(surface, drawn.matrices)[0] for surface in drawn.body.levels[-1]])
+        clip = np.c_[points + drawn.place, np.ones(len(points))] @ viewpoint.matrix.T
+        seen = clip[:, :2] / clip[:, 3:]
+        top, bottom = max(top, seen[:, 1].max()), min(bottom, seen[:, 1].min())
+        sides = max(sides, np.abs(seen[:, 0]).max())
+    assert top < 0.9
+    assert bottom > -0.9
+    assert sides < 0.9
+    assert abs(top + bottom) < 0.16
+    assert top - bottom > 1.1, "the walker should fill more than half of the height"
+
+
+def test_the_legs_view_ends_below_the_hips() -> None:
+    stature = cast("F1", "")[1].stature
+    viewpoint = place_camera(Camera("legs"), 16 / 9, stature, (0.0, 0.0, 0.0))
+    for height, edge in ((0.50, 1.0), (-0.08, -1.0)):
+        clip = viewpoint.matrix @ np.array([0.0, height * stature, 0.0, 1.0])
+        assert clip[1] / clip[3] == pytest.approx(edge, abs=1e-9)
+
+
+def test_the_camera_keeps_pace_with_the_walker(context: moderngl.Context, renderer: Renderer) -> None:
+    """The walker stays at the same place of the picture while the ground goes past."""
+    here = picture(context, renderer, Scene((WALKER,))).astype(int)
+    there = picture(context, renderer, Scene((replace(WALKER, distance=5.4),))).astype(int)
+    changed = np.abs(here - there).max(axis=2)
+    torso = np.s_[60:85, 155:165]
+    assert changed[torso].max() <= 2
+    assert (changed[120:, :100] > 4).mean() > 0.05
+
+
+def test_the_belt_runs_while_the_walker_stays(context: moderngl.Context, renderer: Renderer) -> None:
+    here = picture(context, renderer, Scene((WALKER,), ground="treadmill")).astype(int)
+    there = picture(context, renderer, Scene((replace(WALKER, distance=4.8),), ground="treadmill")).astype(int)
+    changed = np.abs(here - there).max(axis=2) > 4
+    rows = changed.any(axis=1).nonzero()[0]
+    assert 20 < changed.sum() < 2000
+    assert rows[0] > 120, "only the belt moves"
+
+
+@pytest.mark.parametrize("ground", ["open_ground", "treadmill"])
+def test_the_stance_sole_darkens_the_ground_under_it(
+    context: moderngl.Context, renderer: Renderer, ground: Ground
+) -> None:
+    """Beside the standing foot the ground is darker than where nothing is near, and darker still in the shadow."""
+    scene = Scene((replace(WALKER, phase=0.25),), Camera("legs"), ground)
+    with_walker = picture(context, renderer, scene).astype(float).sum(axis=2)
+    moved = replace(scene.walkers[0], place=(60.0, 0.0))
+    (drawn,) = drawn_walkers(scene)
+    target = context.simple_framebuffer(SIZE)
+    away = replace(drawn_walkers(Scene((moved,)))[0], place=(60.0, 0.0, drawn.place[2]))
+    hidden = replace(drawn, matrices=np.zeros_like(drawn.matrices))  # the camera's walker, shrunk to a point
+    renderer.draw(scene, (hidden, away), target)
+    without = renderer.read_pixels(target).astype(float).sum(axis=2)
+    target.release()
+
+    feet = [surface for surface in drawn.body.levels[0] if surface.name == "soles"]
+    assert feet, "the body has no surface named soles"
+    points = np.concatenate([skin(surface, drawn.matrices)[0] for surface in feet])
+    standing = points[points[:, 1] < 0.01]
+    beside = standing[standing[:, 0].argmin()] + np.array([-0.012, 0.0, 0.0])  # just in front of the sole's edge
+    viewpoint = place_camera(scene.camera, SIZE[0] / SIZE[1], drawn.body.stature, drawn.place)
+    clip = viewpoint.matrix @ np.array([*(beside * (1, 0, 1) + drawn.place), 1.0])
+    x = int((0.5 + 0.5 * clip[0] / clip[3]) * SIZE[0])
+    y = int((0.5 - 0.5 * clip[1] / clip[3]) * SIZE[1])
+    assert with_walker[y, x] < 0.93 * without[y, x]
+    shadow = with_walker < 0.8 * without
+    assert shadow[:, : SIZE[0] // 2].sum() > 100, "the shadow falls behind the walker"

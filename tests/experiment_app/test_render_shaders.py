@@ -1,0 +1,120 @@
+"""The shaders against arithmetic in NumPy: skinning, and the step from linear light to sRGB codes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import moderngl
+import numpy as np
+import pytest
+
+from experiment_app.render.body_buffers import SHADOW_FORMAT, SHADOW_NAMES, packed
+from experiment_app.render.light import LIGHTS, fit_sunlight
+from experiment_app.render.picture import Picture
+from experiment_app.render.programs import shader_text
+from experiment_app.render.treadmill_model import BELT_WIDTH, FLOOR, treadmill
+from experiment_app.scene import Scene, Walker
+from experiment_app.walkers import drawn_walkers
+from stimuli.skinning import skin
+
+CAPTURE = """
+in vec3 normal;
+out vec3 skinned;
+out vec3 turned;
+void main() {
+    vec4 x_row, y_row, z_row;
+    blend_matrix(x_row, y_row, z_row);
+    vec4 bound = vec4(position, 1.0);
+    skinned = vec3(dot(x_row, bound), dot(y_row, bound), dot(z_row, bound)) + walker_place();
+    turned = vec3(dot(x_row.xyz, normal), dot(y_row.xyz, normal), dot(z_row.xyz, normal));
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def context() -> Iterator[moderngl.Context]:
+    try:
+        made = moderngl.create_context(standalone=True, backend="egl", require=330)
+    except Exception as error:  # glcontext raises bare Exceptions
+        pytest.skip(f"no OpenGL 3.3 through EGL on this machine: {error}")
+    yield made
+    made.release()
+
+
+def test_skinning_on_the_gpu_is_skinning_in_numpy(context: moderngl.Context) -> None:
+    """Positions within 0.01 mm, normals within 1e-5, for two walkers in one draw."""
+    walkers = tuple(Walker("M1", 1.3, 110.0, phase, distance=2.0, place=(x, 0.0)) for x, phase in ((0.0, 0.1), (1.0, 0.6)))
+    drawn = drawn_walkers(Scene(walkers))
+    surfaces = drawn[0].body.levels[0]
+    vertices, _ = packed(surfaces)
+    rows = np.zeros((2, 64, 4), np.float32)
+    for row, walker in zip(rows, drawn, strict=True):
+        row[:63] = walker.matrices.reshape(63, 4)
+        row[63, :3] = walker.place
+
+    program = context.program(
+        vertex_shader="#version 330 core\n" + shader_text("skinning.glsl") + CAPTURE, varyings=["skinned", "turned"]
+    )
+    poses = context.texture((64, 2), 4, rows.tobytes(), dtype="f4")
+    poses.use(0)
+    buffer = context.buffer(vertices.tobytes())
+    form = SHADOW_FORMAT.replace("12x", "3f4", 1)
+    array = context.vertex_array(program, [(buffer, form, SHADOW_NAMES[0], "normal", *SHADOW_NAMES[1:])])
+    result = context.buffer(reserve=2 * len(vertices) * 24)
+    array.transform(result, moderngl.POINTS, instances=2)
+    got = np.frombuffer(result.read(), np.float32).reshape(2, len(vertices), 2, 3)
+
+    for one, walker in zip(got, drawn, strict=True):
+        expected = [skin(surface, walker.matrices) for surface in surfaces]
+        positions = np.concatenate([part[0] for part in expected]) + walker.place
+        normals = np.concatenate([part[1] for part in expected])
+        turned = one[:, 1] / np.linalg.norm(one[:, 1], axis=1, keepdims=True)
+        assert np.abs(one[:, 0] - positions).max() < 1e-5
+        assert np.abs(turned - normals).max() < 1e-5
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_linear_light_becomes_exact_srgb_codes(context: moderngl.Context, samples: int) -> None:
+    """Each of the 256 codes, as linear light (IEC 61966-2-1), comes back as itself at every pixel."""
+    picture = Picture(context, (64, 8), samples)
+    target = context.simple_framebuffer((64, 8))
+    for code in range(256):
+        value = code / 255
+        light = value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
+        picture.begin()
+        context.fbo.clear(light, light, light, 1.0)
+        picture.show(target)
+        pixels = np.frombuffer(target.read(components=3), np.uint8)
+        assert pixels.min() == code
+        assert pixels.max() == code
+    picture.release()
+    target.release()
+
+
+def test_every_vertex_in_any_pose_is_inside_the_shadow_map() -> None:
+    for phase in np.arange(8) / 8:
+        drawn = drawn_walkers(Scene((Walker("M1", 1.4, 100.0, float(phase), distance=3.0),)))
+        sunlight = fit_sunlight("open_ground", -0.7, drawn, np.zeros((0, 3)))
+        points = np.concatenate([skin(s, drawn[0].matrices)[0] for s in drawn[0].body.levels[0]]) + drawn[0].place
+        seen = points @ sunlight.world_to_map[:3, :3].T + sunlight.world_to_map[:3, 3]
+        assert seen.min() > 0.0
+        assert seen.max() < 1.0
+
+
+def test_the_sun_is_warmer_than_the_sky_and_stronger() -> None:
+    for lights in LIGHTS.values():
+        assert sum(lights.sun) > sum(lights.sky) > sum(lights.bounce)
+        assert lights.sun[0] / lights.sun[2] > lights.sky[0] / lights.sky[2]
+
+
+def test_the_treadmill_faces_outwards_and_its_belt_is_level() -> None:
+    mesh = treadmill()
+    corners = mesh["position"].reshape(-1, 3, 3).astype(float)
+    flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    big = np.linalg.norm(flat, axis=1) > 1e-10
+    agree = np.einsum("ij,ij->i", flat, mesh["normal"].reshape(-1, 3, 3).mean(axis=1))[big]
+    assert (agree > 0.0).all()
+    belt = mesh[mesh["belt"][:, 1] > 0.5]
+    assert belt["position"][:, 1].max() == pytest.approx(0.0, abs=1e-6)
+    assert np.abs(belt["position"][:, 0]).max() == pytest.approx(BELT_WIDTH / 2, abs=1e-6)
+    assert mesh["position"][:, 1].min() == pytest.approx(FLOOR, abs=1e-6)
