@@ -40,6 +40,7 @@ missing=""
 has_library libEGL.so.1 || missing="$missing libegl1"
 has_library libGL.so.1 || missing="$missing libgl1"
 ls /usr/lib/*/dri/*_dri.so /usr/lib*/dri/*_dri.so /usr/lib/*/libgallium*.so >/dev/null 2>&1 || missing="$missing libgl1-mesa-dri"
+has_library libfribidi.so.0 || missing="$missing libfribidi0"
 for library in X11 X11-xcb Xcursor Xi Xinerama Xrandr Xxf86vm; do
   has_library "lib$library.so" || missing="$missing lib$(echo "$library" | tr '[:upper:]' '[:lower:]')"
 done

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pandas as pd
@@ -55,6 +55,7 @@ def analyse(study_folder: Path, out: Path, unfinished: bool = False) -> Analysis
     plan = read_plan(str(first.header.get("study_text", "")), first.name)
     results = compute(recorded, plan, trials_table(recorded, plan))
     drawn, complaints = _figures(results)
+    results = replace(results, warnings=(*results.warnings, *complaints))
     tables = _tables(results)
     names = [
         *tables,
@@ -70,7 +71,7 @@ def analyse(study_folder: Path, out: Path, unfinished: bool = False) -> Analysis
     paths.append(write_bytes(out / "report.html", report(results, drawn, names).encode("utf-8")))
     return AnalysisOutcome(
         tuple(paths),
-        (*results.warnings, *complaints, *(f"{who}: {why}; left out." for who, why in recorded.left_out)),
+        (*results.warnings, *(f"{who}: {why}; left out." for who, why in recorded.left_out)),
         tuple(headlines(results)),
         len(recorded.runs),
         results.simulated > 0,

@@ -220,7 +220,8 @@ def headlines(results: PlannedResults) -> list[str]:
         if rest:
             tests = "; ".join(f"{r['effect']}, {anova_sentence(r)}" for r in rest)
             found.append(f"No evidence of an effect of {tests}.")
-        if not any(":" in effect for effect in results.significant):
+        interactions = results.anova["effect"].str.contains(":")
+        if interactions.any() and not any(":" in effect for effect in results.significant):
             found.append("No interaction was significant.")
     decimals = unit_decimals(results)
     for row in results.ttests.to_dict("records"):

@@ -113,6 +113,33 @@ def summary(file: StudyFile) -> list[str]:
     return lines + _strip(study)
 
 
+def text_notes(study: Study) -> list[str]:
+    """Sentences about texts that this computer cannot show as they should be; empty when it can."""
+    from experiment_app.render.fonts import can_shape, missing_glyphs, needs_shaping
+
+    texts = "".join(sorted(set("".join(_texts(study.model_dump())))))
+    notes = []
+    missing = sorted(missing_glyphs(texts))
+    if missing:
+        signs = " ".join(missing[:20])
+        notes.append(f"no font on this computer has: {signs}; install one that does (on Debian, fonts-noto).")
+    if needs_shaping(texts) and not can_shape():
+        notes.append("a script in the texts needs FriBiDi to be shown right; install it (on Debian, libfribidi0).")
+    return notes
+
+
+def _texts(part: object) -> Iterator[str]:
+    """Every text in a part of a study, whatever it is for."""
+    if isinstance(part, str):
+        yield part
+    elif isinstance(part, dict):
+        for value in part.values():
+            yield from _texts(value)
+    elif isinstance(part, (list, tuple)):
+        for value in part:
+            yield from _texts(value)
+
+
 def _strip(study: Study) -> list[str]:
     """For every level of every factor: in which of 48 equal parts of the session its trials fall."""
     trials = make_trials(study, seed=1)

@@ -107,9 +107,11 @@ def check(
     picture: Annotated[Path | None, Parameter(help="Also write the balance of the design as a picture (PNG).")] = None,
 ) -> int:
     """Check a study file: every mistake with its line, the number of trials, how long it takes, the balance."""
-    from experiment_app.check import checked_study, design_picture, summary
+    from experiment_app.check import checked_study, design_picture, summary, text_notes
 
     file = checked_study(study)
+    for note in text_notes(file.study):
+        problems.print(f"Note: {note}", style="yellow", markup=False)
     for line in summary(file):
         out.print(line, markup=False)
     if picture is not None:

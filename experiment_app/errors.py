@@ -8,4 +8,11 @@ class UsageError(Exception):
 
 
 class RunError(Exception):
-    """Something failed while a run was going on; what was recorded is safe. Exit status 1."""
+    """Something failed while a run was going on; what was recorded is safe. Exit status 1.
+
+    reason: what the operating system said, where it said something.
+    """
+
+    def __init__(self, message: str, reason: str = "") -> None:
+        super().__init__(message)
+        self.reason = reason

@@ -75,7 +75,8 @@ class Journal:
         if self._failure is not None:
             raise RunError(
                 f"{self.path} can no longer be written ({self._failure.strerror}); everything up to the last "
-                "finished trial is safe. Make room or repair the disk, then give the same command again to go on."
+                "finished trial is safe. Make room or repair the disk, then give the same command again to go on.",
+                reason=str(self._failure.strerror),
             )
 
     def _write_all(self) -> None:
@@ -95,6 +96,7 @@ class Journal:
 
 def create_journal(run: Run, header: Header) -> Journal:
     """The journal of a new run, its header on disk; raises UsageError when one is there already."""
+    _set_aside_unbegun(run)
     try:
         file = open(run.journal, "xb", buffering=0)  # noqa: SIM115 - the Journal closes it
     except FileExistsError:
@@ -111,8 +113,23 @@ def create_journal(run: Run, header: Header) -> Journal:
         _sync_folder(run.folder)
     except RunError as error:
         file.close()
-        raise UsageError(f"{error}") from None
+        raise UsageError(
+            f"{run.journal} cannot be written ({error.reason}); make room or choose another folder with --data."
+        ) from None
     return journal
+
+
+def _set_aside_unbegun(run: Run) -> None:
+    """Renames a journal without even a whole header, left by a kill in its first moment, so a run can begin."""
+    if not run.journal.exists() or journal_lines(run.journal)[0]:
+        return
+    with open(run.journal, "rb") as file:
+        lock(file, run.journal)
+        os.rename(run.journal, _torn_name(run.folder))
+
+
+def _torn_name(folder: Path) -> Path:
+    return folder / f"journal.torn-{len(list(folder.glob('journal.torn-*'))) + 1}"
 
 
 def reopen_journal(run: Run) -> tuple[Journal, int]:
@@ -130,8 +147,7 @@ def reopen_journal(run: Run) -> tuple[Journal, int]:
         size = os.fstat(file.fileno()).st_size
         file.seek(size - torn)
         rest = file.read()
-        copies = len(list(run.folder.glob("journal.torn-*")))
-        with open(run.folder / f"journal.torn-{copies + 1}", "xb") as copy:
+        with open(_torn_name(run.folder), "xb") as copy:
             copy.write(rest)
             copy.flush()
             os.fsync(copy.fileno())

@@ -37,7 +37,7 @@ class OpenRun:
 def unfinished_run(data: Path, study: str, participant: str) -> Run | None:
     """The participant's latest run when it can be continued, else None."""
     runs = participant_runs(data, study, participant)
-    return runs[-1] if runs and runs[-1].lines and not runs[-1].end else None
+    return runs[-1] if runs and not runs[-1].end else None
 
 
 def open_new(

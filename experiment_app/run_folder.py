@@ -66,13 +66,17 @@ def study_folder(data: Path, study: str) -> Path:
 
 
 def participant_runs(data: Path, study: str, participant: str) -> list[Run]:
-    """The runs of a participant, oldest first; raises UsageError for an unreadable journal."""
+    """The runs of a participant, oldest first; raises UsageError for an unreadable journal.
+
+    A folder whose journal has no whole line never began and does not count.
+    """
     folder = study_folder(data, study) / "sourcedata" / f"sub-{participant}"
     try:
         numbers = sorted(int(p.name[4:]) for p in folder.glob("run-*") if p.name[4:].isdigit())
     except OSError as error:
         raise UsageError(f"{folder} cannot be read: {error.strerror}.") from None
-    return [_read(folder / f"run-{number}", study, participant, number) for number in numbers]
+    runs = [_read(folder / f"run-{number}", study, participant, number) for number in numbers]
+    return [run for run in runs if run.lines]
 
 
 def participant_number(data: Path, study: str, participant: str) -> int:

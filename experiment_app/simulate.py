@@ -56,7 +56,7 @@ def refuse_mixed(data: Path, study: str, *, simulated: bool) -> None:
     folder = data / study / "sourcedata"
     for person in sorted(folder.glob("sub-*")):
         runs = participant_runs(data, study, person.name.removeprefix("sub-"))
-        if runs and runs[0].lines and bool(runs[0].header.get("simulated")) != simulated:
+        if runs and bool(runs[0].header.get("simulated")) != simulated:
             here, wanted = ("real", "simulated") if simulated else ("simulated", "real")
             raise UsageError(
                 f"{data / study} holds {here} participants ({person.name}); {wanted} ones must not be mixed "

@@ -155,8 +155,10 @@ def _planned_analysis(study: Study) -> Iterator[Mistake]:
             yield Mistake(("analysis", "t_tests", i, "each"), _unknown(test.each, within, "factor"))
             continue
         levels = [str(level) for level in study.factors[test.each]]
+        without = [level for level in levels if level not in test.against]
         for level in test.against:
-            if level not in levels:
+            # values for levels that are not shown do no harm, unless one of them may be misspelt
+            if level not in levels and without:
                 message = _unknown(level, levels, f"level of {test.each}")
                 yield Mistake(("analysis", "t_tests", i, "against", level), message, on_key=True)
     labels = [test.label for test in plan.t_tests]

@@ -96,8 +96,14 @@ def people() -> dict[str, Person]:
     for row in csv.DictReader(text.splitlines()):
         terms = (term.split() for term in row["manner"].split(" + "))
         found[row["name"]] = Person(
-            row["name"], row["sex"], float(row["age_years"]), float(row["height_cm"]) / 100, float(row["weight_kg"]),
-            float(row["comfort_speed_mps"]), float(row["walk_ratio_m_min"]), row["walk_ratio_source"],
+            row["name"],
+            row["sex"],
+            float(row["age_years"]),
+            float(row["height_cm"]) / 100,
+            float(row["weight_kg"]),
+            float(row["comfort_speed_mps"]),
+            float(row["walk_ratio_m_min"]),
+            row["walk_ratio_source"],
             tuple((name, float(weight)) for weight, name in terms),
         )
     return found
@@ -133,15 +139,26 @@ def _make(person: Person, body: Body) -> Actor:
     model = load_gait_model()
     manner = model.manner(dict(person.manner))
     cycles = [
-        walk_cycle(figure, *walk_coefficients(model, person, manner, figure.leg_length, speed, frequency), speed, frequency)
+        walk_cycle(
+            figure, *walk_coefficients(model, person, manner, figure.leg_length, speed, frequency), speed, frequency
+        )
         for frequency in METRONOME
         for speed in CYCLE_SPEEDS
     ]
     return Actor(
-        name=person.name, sex=person.sex, age=person.age, height=person.height, weight=person.weight,
-        comfort_speed=person.comfort_speed, captured_walk_ratio=person.walk_ratio,
-        walk_ratio_source=person.walk_ratio_source, body=body.name, figure=figure, table=CycleTable.of(cycles),
-        tree=metronome_tree(METRONOME, CYCLE_SPEEDS), provenance="modelled",
+        name=person.name,
+        sex=person.sex,
+        age=person.age,
+        height=person.height,
+        weight=person.weight,
+        comfort_speed=person.comfort_speed,
+        captured_walk_ratio=person.walk_ratio,
+        walk_ratio_source=person.walk_ratio_source,
+        body=body.name,
+        figure=figure,
+        table=CycleTable.of(cycles),
+        tree=metronome_tree(METRONOME, CYCLE_SPEEDS),
+        provenance="modelled",
     )
 
 
@@ -166,7 +183,9 @@ def walk_coefficients(
 def metronome_tree(frequencies: tuple[float, ...], speeds: tuple[float, ...]) -> Tree:
     """A main branch over step frequency, each child a branch over speed; cycles counted speed first."""
     return Branch(
-        "step_frequency", "steps/min", frequencies,
+        "step_frequency",
+        "steps/min",
+        frequencies,
         tuple(
             Branch("speed", "m/s", speeds, tuple(Leaf(row * len(speeds) + column) for column in range(len(speeds))))
             for row in range(len(frequencies))

@@ -38,12 +38,7 @@ SIGNALS: tuple[str, ...] = MIDLINE + SIDED
 HARMONICS = 8
 COEFFICIENTS = 1 + 2 * HARMONICS
 
-MIRROR_SIGN = np.array(
-    [
-        -1.0 if name.endswith(("_y", "_z", "_shift", "_yaw")) else 1.0
-        for name in SIGNALS
-    ]
-)
+MIRROR_SIGN = np.array([-1.0 if name.endswith(("_y", "_z", "_shift", "_yaw")) else 1.0 for name in SIGNALS])
 """What reflection in the sagittal plane does to each signal (a rotation vector keeps x and changes y and z)."""
 
 

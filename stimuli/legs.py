@@ -97,4 +97,3 @@ def _world_frame(along: Vector, hinge: Vector) -> Floats:
     ax, ay, az = along
     hx, hy, hz = hinge
     return np.array([[ax, hx, hy * az - hz * ay], [ay, hy, hz * ax - hx * az], [az, hz, hx * ay - hy * ax]])
-

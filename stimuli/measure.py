@@ -65,9 +65,13 @@ def delivered_gait(actor: Actor, speed: float, step_frequency: float, samples: i
     on_ground = lowest < TOUCHING
     knees = [_knee(world[..., :3, 3], side) for side in ("left", "right")]
     return DeliveredGait(
-        speed=length * frequency / 60.0, step_frequency=frequency, step_length=length,
-        slide_mean=float(np.mean(drifts)) * 1e3, slide_peak=float(np.max(drifts)) * 1e3,
-        sole_lowest=float(lowest.min()) * 1e3, sole_stance=float(np.abs(lowest[on_ground]).max()) * 1e3,
+        speed=length * frequency / 60.0,
+        step_frequency=frequency,
+        step_length=length,
+        slide_mean=float(np.mean(drifts)) * 1e3,
+        slide_peak=float(np.max(drifts)) * 1e3,
+        sole_lowest=float(lowest.min()) * 1e3,
+        sole_stance=float(np.abs(lowest[on_ground]).max()) * 1e3,
         knee_least=float(np.min(knees)),
     )
 

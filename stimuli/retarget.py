@@ -25,12 +25,13 @@ from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
 SAMPLES = 256
 PHASES = np.arange(SAMPLES) / SAMPLES
 SMOOTHING = 6  # samples each way
-CLOSING = 0.06
+CLOSING = 0.15
+STEP_TERMS = [0, 3, 4, 7, 8, 11, 12, 15, 16]
 
 MIRRORED_FOOT = np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0])
 """Sign of each of the FOOT_CHANNELS for the other side."""
 
-BUILT_REACH = 0.9994
+BUILT_REACH = 0.9996
 """Largest hip-ankle distance over leg length in a cycle as built (a knee bent by 4 degrees); blending needs the rest."""
 
 SWING_GAIN = (0.8, 1.35)
@@ -69,9 +70,7 @@ def scaled(skeleton: Skeleton, factor: float) -> Skeleton:
     return Skeleton(np.asarray(skeleton.offsets, dtype=float) * factor)
 
 
-def walk_cycle(
-    figure: Figure, coefficients: Floats, stance: float, speed: float, step_frequency: float
-) -> WalkCycle:
+def walk_cycle(figure: Figure, coefficients: Floats, stance: float, speed: float, step_frequency: float) -> WalkCycle:
     """One cycle of a walk with these Fourier coefficients (S, C) at exactly this speed and step frequency.
 
     stance: share of the cycle on each foot; speed m/s; step_frequency steps/min.
@@ -92,8 +91,13 @@ def walk_cycle(
     joint = np.column_stack([hip[:, 0], height + hip[:, 1], advance + hip[:, 2]])
     feet = _foot_channels(foot, carried, stride, ahead, joint, BUILT_REACH * figure.legs[1].length)
     return WalkCycle(
-        speed, step_frequency, hips, rotations,
-        np.array([feet * MIRRORED_FOOT, feet]), np.array([stance, stance]), np.array([ahead, ahead]),
+        speed,
+        step_frequency,
+        hips,
+        rotations,
+        np.array([feet * MIRRORED_FOOT, feet]),
+        np.array([stance, stance]),
+        np.array([ahead, ahead]),
     )
 
 
@@ -118,9 +122,7 @@ class _Foot:
         return cls.pitched(figure.sole, right["foot"], yaw, right["knee_yaw"], side, stance)
 
     @classmethod
-    def pitched(
-        cls, sole: Sole, drawn: Floats, yaw: Floats, knee_yaw: Floats, side: Floats, stance: float
-    ) -> _Foot:
+    def pitched(cls, sole: Sole, drawn: Floats, yaw: Floats, knee_yaw: Floats, side: Floats, stance: float) -> _Foot:
         pitch = contact.wanted_pitch(drawn)
         swing = contact.swing_progress(contact.clock(PHASES, stance))
         forward, up = contact.planted(sole, drawn, contact.toe_bend(drawn, swing))
@@ -144,7 +146,7 @@ def _pushed_off(sole: Sole, foot: _Foot, vector: Floats, hip_up: Floats, behind:
     best = changes[np.argmin((reached - length[:, None]) ** 2 + (0.02 * changes) ** 2, axis=1)]
     late = contact.smooth_step((PHASES - 0.36) / 0.1) * contact.smooth_step((foot.stance + 0.1 - PHASES) / 0.1)
     end = int(np.searchsorted(PHASES, foot.stance - 0.01))
-    held = np.where(PHASES < PHASES[end], best, best[end])
+    held = np.where(PHASES[end] > PHASES, best, best[end])
     return _Foot.pitched(sole, drawn + late * _smoothed(held), foot.yaw, foot.knee_yaw, foot.side, foot.stance)
 
 
@@ -161,7 +163,9 @@ def _upper_body(figure: Figure, coefficients: Floats) -> tuple[Floats, Floats]:
     for side, of, mirror, sign in (("right", right, False, -1.0), ("left", left, True, 1.0)):
         world[f"{side}Shoulder"] = turned(of, "shoulder", mirror)
         for joint, end, segment in (
-            ("UpperArm", "LowerArm", "upperArm"), ("LowerArm", "Hand", "lowerArm"), ("Hand", "Hand", "hand")
+            ("UpperArm", "LowerArm", "upperArm"),
+            ("LowerArm", "Hand", "lowerArm"),
+            ("Hand", "Hand", "hand"),
         ):
             aligned = shortest_arc(offsets[JOINTS.index(side + end)], MODEL_ARM * (sign, 1.0, 1.0))
             world[side + joint] = multiply(turned(of, segment, mirror), aligned)
@@ -176,10 +180,12 @@ def _leg_vector(leg: Leg, thigh: Floats, shank: Floats, sideways: Floats) -> Flo
 
     The knee angle is kept, so the part of the leg's length that leads sideways is taken off.
     """
-    vector = np.column_stack([
-        -leg.thigh * np.cos(thigh) - leg.shank * np.cos(shank),
-        leg.thigh * np.sin(thigh) + leg.shank * np.sin(shank),
-    ])
+    vector = np.column_stack(
+        [
+            -leg.thigh * np.cos(thigh) - leg.shank * np.cos(shank),
+            leg.thigh * np.sin(thigh) + leg.shank * np.sin(shank),
+        ]
+    )
     length = reach(leg, thigh - shank)
     return vector * (np.sqrt(length**2 - sideways**2) / np.linalg.norm(vector, axis=1))[:, None]
 
@@ -203,15 +209,13 @@ def _advance(vector: Floats, hip: Floats, foot: _Foot, stride: float) -> tuple[F
     return steps @ solution[:-1], float(solution[-1]), np.column_stack([-np.sqrt(length**2 - forward**2), forward])
 
 
-def _height(
-    leg_length: float, vector: Floats, hip: Floats, foot: _Foot, behind: Floats, knee: Floats
-) -> Floats:
+def _height(leg_length: float, vector: Floats, hip: Floats, foot: _Foot, behind: Floats, knee: Floats) -> Floats:
     """Height (N,) m of the hips: least squares over the stance leg, lowered where the leg would not reach.
 
     behind: (N,) m, from the hips' advance to the place of the footprint; knee: (N,) rad. The straighter the knee,
     the more a millimetre of height bends it, and the more it counts.
     """
-    weight = _standing_weight(foot.stance) / (np.maximum(knee, 0.0) + 0.05) ** 2 * np.where(PHASES < 0.1, 3.0, 1.0)
+    weight = _standing_weight(foot.stance) / (np.maximum(knee, 0.0) + 0.05) ** 2 * np.where(PHASES < 0.1, 2.0, 1.0)
     steps = _step_harmonics()
     wanted = foot.ankle[:, 1] - vector[:, 0] - hip[:, 1]
     sideways = foot.ankle[:, 0] - hip[:, 0]
@@ -236,9 +240,7 @@ def _standing_weight(stance: float) -> Floats:
     return np.asarray(contact.smooth_step((stance - 0.1 - PHASES) / 0.1))
 
 
-def _foot_channels(
-    foot: _Foot, carried: Floats, stride: float, ahead: float, hip: Floats, reach: float
-) -> Floats:
+def _foot_channels(foot: _Foot, carried: Floats, stride: float, ahead: float, hip: Floats, reach: float) -> Floats:
     """(N, 6) FOOT_CHANNELS of the right foot on its own clock.
 
     carried: (N, 2) m, up and forward: where the swinging leg carries the ankle; hip: (N, 3) m; reach: m.
@@ -249,8 +251,8 @@ def _foot_channels(
     def on_clock(values: Floats) -> Floats:
         return np.interp(phases, np.append(PHASES, 1.0), np.append(values, values[0]))
 
-    leave = contact.smooth_step(swing / 0.1) * contact.smooth_step((1.0 - swing) / 0.18)
-    least = LEAST_CLEARANCE * contact.smooth_step(swing / 0.1) * contact.smooth_step((1.0 - swing) / 0.5)
+    leave = contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / 0.1)
+    least = LEAST_CLEARANCE * contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / 0.15)
     clearance = least + leave * _soft_positive(on_clock(carried[:, 0] - foot.ankle[:, 1]) - least)
 
     rolled = on_clock(foot.ankle[:, 2]) + ahead
@@ -261,7 +263,7 @@ def _foot_channels(
     far = np.sqrt(np.maximum(reach**2 - up**2 - sideways**2, 0.0))
     places = [(on_clock(hip[:, 2]) + sign * far - rolled) / stride - course for sign in (-1.0, 1.0)]
     travel = _smoothed(np.where(swing > 0.0, np.clip(travel, *places), 0.0)) * _swing_window(swing)
-    travel = np.where(swing > 0.0, np.clip(travel, *places), 0.0)
+    travel = travel + contact.smooth_step(swing / 0.1) * (np.clip(travel, *places) - travel)
     channels = {
         "pitch": on_clock(foot.pitch),
         "clearance": clearance,
@@ -275,7 +277,7 @@ def _foot_channels(
 
 def _step_harmonics() -> Floats:
     """(N, 9): 1 and the first four harmonics of the step (even ones of the cycle)."""
-    return basis(PHASES)[:, [0, 3, 4, 7, 8, 11, 12, 15, 16]]
+    return basis(PHASES)[:, STEP_TERMS]
 
 
 def _still_in_stance(values: Floats, stance: float) -> Floats:
@@ -286,7 +288,9 @@ def _still_in_stance(values: Floats, stance: float) -> Floats:
 
 def _swing_window(progress: Floats) -> Floats:
     """0 in stance, 1 in mid swing, without a jump in velocity or acceleration."""
-    return np.asarray(contact.smooth_step(progress / 0.12) * contact.smooth_step((contact.ARRIVAL - progress) / CLOSING))
+    return np.asarray(
+        contact.smooth_step((progress - 0.01) / 0.1) * contact.smooth_step((contact.ARRIVAL - progress) / CLOSING)
+    )
 
 
 def _smoothed(values: Floats) -> Floats:
@@ -299,4 +303,3 @@ def _smoothed(values: Floats) -> Floats:
 def _soft_positive(values: Floats, width: float = 0.002) -> Floats:
     """values where well above 0, 0 well below, smooth between (m)."""
     return np.asarray(width * np.logaddexp(0.0, values / width))
-

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import moderngl
 import numpy as np
+from numpy.typing import NDArray
 
 from stimuli.body import Body, Surface
 
@@ -64,7 +65,7 @@ class BodyOnGpu:
             thing.release()
 
 
-def packed(surfaces: tuple[Surface, ...]) -> tuple[np.ndarray, np.ndarray]:
+def packed(surfaces: tuple[Surface, ...]) -> tuple[NDArray[np.void], NDArray[np.uint32]]:
     """Vertices (V,) of VERTEX and triangles (T, 3) uint32 of all surfaces together."""
     vertices = np.zeros(sum(len(s.positions) for s in surfaces), VERTEX)
     triangles = []

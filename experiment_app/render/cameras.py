@@ -46,9 +46,7 @@ class Viewpoint:
         return 0.5 * picture_height / (self.half_height * max(distance, NEAR))
 
 
-def place_camera(
-    camera: Camera, aspect: float, stature: float, walker: tuple[float, float, float]
-) -> Viewpoint:
+def place_camera(camera: Camera, aspect: float, stature: float, walker: tuple[float, float, float]) -> Viewpoint:
     """Put the camera so that the walker is centred vertically.
 
     camera:  the scene's camera.
@@ -82,13 +80,14 @@ def place_camera(
 
 def look(eye: Floats, forward: Floats) -> Floats:
     """(4, 4) world to eye space (-Z ahead, +Y up); forward: (3,), not vertical."""
-    forward = forward / np.linalg.norm(forward)
-    right = np.cross(forward, (0.0, 1.0, 0.0))
-    right /= np.linalg.norm(right)
-    rotation = np.stack([right, np.cross(right, forward), -forward])
+    x, y, z = (float(value) for value in forward)
+    length, flat = math.sqrt(x * x + y * y + z * z), math.hypot(x, z)
+    x, y, z, across = x / length, y / length, z / length, flat / length
+    right = (-z / across, 0.0, x / across)
+    above = (-y * x / across, across, -y * z / across)
     matrix = np.eye(4)
-    matrix[:3, :3] = rotation
-    matrix[:3, 3] = -rotation @ eye
+    matrix[:3, :3] = (right, above, (-x, -y, -z))
+    matrix[:3, 3] = -matrix[:3, :3] @ eye
     return matrix
 
 

@@ -67,16 +67,23 @@ class Block:
 def layout_page(page: Page, width: int, height: int, pixel_ratio: float) -> PageLayout:
     """A page in a window of width x height device pixels; pixel_ratio is device pixels per ordinary pixel."""
     settings = _settings(width, height, pixel_ratio, CARD_MEASURE if page.over_scene else MEASURE)
-    fits = bisect_left(settings, True, key=lambda s: _layout(page, width, height, s).complete)
-    return _layout(page, width, height, settings[min(fits, len(settings) - 1)])
+    return _first_complete(lambda setting: _layout(page, width, height, setting), settings)
 
 
 @lru_cache(maxsize=16)
 def layout_caption(caption: str, width: int, height: int, pixel_ratio: float) -> PageLayout:
     """The line at the bottom of a scene, on a card of its own."""
     settings = _settings(width, height, pixel_ratio, MEASURE)
-    fits = bisect_left(settings, True, key=lambda s: _caption(caption, width, height, s).complete)
-    return _caption(caption, width, height, settings[min(fits, len(settings) - 1)])
+    return _first_complete(lambda setting: _caption(caption, width, height, setting), settings)
+
+
+def _first_complete(lay_out: Callable[[Setting], PageLayout], settings: Sequence[Setting]) -> PageLayout:
+    """The layout with the best setting that fits; nearly always the first."""
+    first = lay_out(settings[0])
+    if first.complete:
+        return first
+    fits = bisect_left(settings, True, key=lambda setting: lay_out(setting).complete)
+    return lay_out(settings[min(fits, len(settings) - 1)])
 
 
 def hit(layout: PageLayout, x: float, y: float) -> str | None:

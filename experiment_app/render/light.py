@@ -80,9 +80,7 @@ def direction_to_sun(view_azimuth: float) -> Floats:
     return np.array([flat * math.sin(azimuth), math.sin(SUN_ELEVATION), flat * math.cos(azimuth)])
 
 
-def fit_sunlight(
-    ground: Ground, view_azimuth: float, walkers: Sequence[DrawnWalker], corners: Floats
-) -> Sunlight:
+def fit_sunlight(ground: Ground, view_azimuth: float, walkers: Sequence[DrawnWalker], corners: Floats) -> Sunlight:
     """The sun, with the smallest upright box in its light that holds every walker and every corner point.
 
     corners: (N, 3) m, other things that cast shadows, N may be 0.

@@ -30,8 +30,8 @@ from experiment_app.render.programs import build
 from experiment_app.render.text import mask_of, overhang
 from experiment_app.scene import Page, Scene
 
-INSTANCE = "4f 4f 4f 3f/i"
-"""Rectangle, fill, edge and form of one shape, as the vertex shader reads them."""
+INSTANCE = {"rectangle": 4, "fill": 4, "edge": 4, "form": 3}
+"""What the vertex shader reads of one shape, and how many numbers each is."""
 
 PREMULTIPLIED = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
 """How colours multiplied by their alpha go over others."""
@@ -158,8 +158,9 @@ class _Picture:
         program["size"] = (self.place.width, self.place.height)
         program["corner"] = (self.place.x, self.place.y)
         buffer = self._context.buffer(np.asarray(instances, np.float32).tobytes())
-        content = [(buffer, INSTANCE, "rectangle", "fill", "edge", "form")]
-        array = self._context.vertex_array(program, content, skip_errors=True)
+        used = [name for name in INSTANCE if name in program]  # a driver may drop what changes nothing
+        form = " ".join(f"{count}f" if name in used else f"{4 * count}x" for name, count in INSTANCE.items())
+        array = self._context.vertex_array(program, [(buffer, f"{form}/i", *used)])
         array.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=len(instances))
         array.release()
         buffer.release()

@@ -23,9 +23,7 @@ class Renderer:
     samples:     wanted per pixel; `samples` tells what the driver gave.
     """
 
-    def __init__(
-        self, context: moderngl.Context, size: tuple[int, int], pixel_ratio: float, samples: int
-    ) -> None:
+    def __init__(self, context: moderngl.Context, size: tuple[int, int], pixel_ratio: float, samples: int) -> None:
         self._picture = Picture(context, size, samples)
         self._stage = Stage(context)
         self._pages = PagePainter(context, size, pixel_ratio)

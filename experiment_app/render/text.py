@@ -99,7 +99,7 @@ def last_part(text: str, size: int, bold: bool, width: float) -> str:
     return ends[min(bisect_left(ends, True, key=lambda end: width_of(end, size, bold) <= width), len(ends) - 1)]
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=256)
 def mask_of(text: str, size: int, bold: bool, height: int) -> NDArray[np.uint8]:
     """How much of every pixel a line of clean text covers.
 

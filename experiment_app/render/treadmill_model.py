@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stimuli.skeleton import Floats
 
@@ -24,21 +25,27 @@ BELT_PAINT = (0.060, 0.061, 0.064, 0.85)
 """Linear red, green, blue and roughness."""
 
 VERTEX = np.dtype([("position", "3f4"), ("normal", "3f4"), ("paint", "4f4"), ("belt", "2f4")])
+Vertices = NDArray[np.void]
 
 
-def rounded_box(low: Sequence[float], high: Sequence[float], radius: float, paint: tuple[float, ...]) -> Floats:
-    """(N,) of VERTEX, three per triangle: a box between two corners (m) with edges rounded by a radius (m)."""
+def rounded_box(
+    low: Sequence[float], high: Sequence[float], radius: float, paint: tuple[float, ...], steps: int = 1
+) -> Vertices:
+    """(N,) of VERTEX, three per triangle: a box between two corners (m) with edges rounded by a radius (m).
+
+    steps: flat pieces per rounded eighth of a turn; one is enough where the eye does not come near.
+    """
     middle, half = (np.add(low, high)) / 2.0, np.subtract(high, low) / 2.0
-    arc = radius * (1.0 - np.cos(np.linspace(0.0, math.pi / 2.0, 4)))
+    arc = radius * (1.0 - np.tan(math.pi / 4.0 - np.linspace(0.0, math.pi / 4.0, steps + 1)))
     triangles = []
     for axis in range(3):
         for sign in (-1.0, 1.0):
             u, v = (axis + 1) % 3, (axis + 2) % 3
-            steps = [np.concatenate([arc - half[a], (half[a] - arc)[::-1]]) for a in (u, v)]
-            grid = np.empty((len(steps[0]), len(steps[1]), 3))
+            ticks = [np.concatenate([arc - half[a], (half[a] - arc)[::-1]]) for a in (u, v)]
+            grid = np.empty((len(ticks[0]), len(ticks[1]), 3))
             grid[..., axis] = sign * half[axis]
-            grid[..., u] = steps[0][:, None]
-            grid[..., v] = steps[1][None, :]
+            grid[..., u] = ticks[0][:, None]
+            grid[..., v] = ticks[1][None, :]
             triangles.append(_two_triangles(grid, sign < 0.0))
     points = np.concatenate(triangles)
     inner = np.clip(points, radius - half, half - radius)
@@ -51,7 +58,7 @@ def rounded_box(low: Sequence[float], high: Sequence[float], radius: float, pain
     return vertices
 
 
-def belt() -> Floats:
+def belt() -> Vertices:
     """(N,) of VERTEX: the belt's upper side and its turn round both rollers."""
     straight = BELT_LENGTH / 2.0 - ROLLER
     angles = np.linspace(0.0, math.pi, 13)
@@ -73,7 +80,7 @@ def belt() -> Floats:
         grid[:, column, 4:6] = outward
         grid[:, column, 6] = run
         grid[:, column, 7] = 1.0
-    flat = _two_triangles(grid, True)
+    flat = _two_triangles(grid, False)
     vertices = np.zeros(len(flat), VERTEX)
     vertices["position"], vertices["normal"] = flat[:, :3], flat[:, 3:6]
     vertices["belt"] = flat[:, 6:]
@@ -81,20 +88,20 @@ def belt() -> Floats:
     return vertices
 
 
-def treadmill() -> Floats:
+def treadmill() -> Vertices:
     """(N,) of VERTEX: the whole machine."""
     inner = BELT_WIDTH / 2.0 + 0.006
     parts = [belt()]
     for side in (-1.0, 1.0):
         x = sorted((side * inner, side * HALF_WIDTH))
-        parts.append(rounded_box((x[0], -0.085, BACK), (x[1], 0.014, FRONT - 0.30), 0.012, RAIL_PAINT))
+        parts.append(rounded_box((x[0], -0.085, BACK), (x[1], 0.014, FRONT - 0.30), 0.012, RAIL_PAINT, 2))
         x = sorted((side * (inner + 0.02), side * (HALF_WIDTH - 0.012)))
         parts.append(rounded_box((x[0], FLOOR + 0.03, BACK + 0.03), (x[1], -0.08, FRONT - 0.1), 0.01, FRAME_PAINT))
         for z in (BACK + 0.14, FRONT - 0.24):
             x = sorted((side * (HALF_WIDTH - 0.13), side * (HALF_WIDTH - 0.03)))
             parts.append(rounded_box((x[0], FLOOR, z - 0.06), (x[1], FLOOR + 0.05, z + 0.06), 0.012, FOOT_PAINT))
     hood = ((-HALF_WIDTH, FLOOR + 0.045, FRONT - 0.32), (HALF_WIDTH, 0.045, FRONT))
-    parts.append(rounded_box(*hood, 0.035, HOOD_PAINT))
+    parts.append(rounded_box(*hood, 0.035, HOOD_PAINT, 3))
     parts.append(rounded_box((-inner, FLOOR + 0.035, BACK + 0.01), (inner, -0.025, BACK + 0.055), 0.01, FRAME_PAINT))
     parts.append(rounded_box((-inner, -0.12, BACK + 0.12), (inner, -0.03, FRONT - 0.3), 0.01, FRAME_PAINT))
     return np.concatenate(parts)

@@ -108,7 +108,7 @@ def solid_pieces(part: Part, everything: Field, coarseness: float = 1.0) -> list
         mesh = Mesh(settled(field, mesh.positions, 0.35 * part.spacing), mesh.triangles)
         edge = np.sqrt(_area(mesh) / max(len(mesh.triangles), 1))
         normals = normals_of(field, mesh.positions, float(np.clip(0.22 * edge, 0.12, 0.5)))
-        shade = occlusion(everything, field, mesh.positions, normals)
+        shade = occlusion(everything, field, mesh.positions, normals) * part.paint(mesh.positions)
         piece = Piece(part.material, mesh, normals, shade)
         found.append([piece, _mirror(piece)] if part.twin else [piece])
     return found
@@ -129,18 +129,26 @@ def hair_pieces(name: str, figure: Figure, everything: Field, coarseness: float 
     finest = polished(polygonise(field, lower, upper, spacing), field, spacing, rounds=1)
     found = []
     for budget, segments, share in zip(HAIR_BUDGETS, LOCK_SEGMENTS, LOCK_SHARE, strict=True):
-        mesh = simplified(finest, round(budget * (2 if cut.locks == 0 else 1) / coarseness))
+        mesh = simplified(finest, round(budget * (3 if cut.locks == 0 and segments else 1) / coarseness))
         normals = normals_of(field, mesh.positions, 0.3)
         shade = occlusion(everything, field, mesh.positions, normals)
         combed = segments > 0 and cut.locks > 0
-        grain = 0.62 if combed else np.random.default_rng(8).uniform(0.65, 1.0, len(shade))
-        level = [Piece(f"hair:{name}", mesh, normals, shade * grain)]
+        if not combed:
+            normals, shade = _grained(normals, shade)
+        level = [Piece(f"hair:{name}", mesh, normals, shade * (0.62 if combed else 1.0))]
         if combed:
             locks = comb(cut, frame, finest, segments, share / coarseness)
             open_sky = occlusion(everything, field, locks.mesh.positions, locks.normals)
             level.append(Piece(f"hair:{name}", locks.mesh, locks.normals, locks.shade * (0.35 + 0.65 * open_sky)))
         found.append(level)
     return found
+
+
+def _grained(normals: Floats, shade: Floats) -> tuple[Floats, Floats]:
+    """Normals and shade of clipped hair: uneven from vertex to vertex, so that it does not shine like a cap."""
+    rng = np.random.default_rng(8)
+    uneven = normals + rng.normal(0, 0.28, normals.shape)
+    return uneven / np.linalg.norm(uneven, axis=1, keepdims=True), shade * rng.uniform(0.6, 1.0, len(shade))
 
 
 def gathered(figure: Figure, levels: list[list[Piece]], heat: Heat) -> Body:

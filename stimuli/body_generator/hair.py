@@ -162,9 +162,9 @@ def _bob(skull: Field) -> Style:
 
     def shape(p: Floats) -> tuple[Floats, Floats, Floats]:
         one = np.ones(len(p))
-        return 6.5 * one, 1.35 * one, 0.24 * one
+        return 6.5 * one, 1.25 * one, 0.30 * one
 
-    return Style(cap, volume, flow, 210, shape, lambda p: np.maximum(-0.5 - opening(p), 152.3 - p[:, 1]))
+    return Style(cap, volume, flow, 250, shape, lambda p: np.maximum(-0.5 - opening(p), 152.3 - p[:, 1]))
 
 
 def _ponytail(skull: Field) -> Style:

@@ -6,6 +6,7 @@ origin of x and z below the ear canal's plane. Sections follow a head of 15.4 x 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -82,6 +83,21 @@ def head(figure: Figure, chest: Field) -> Field:
         chest(p), np.maximum(low - p[:, 1], np.abs(p[:, 0]) - 10.0), 0.5
     )
     return join(field, (neck, 2.4), (under_shirt, 1.6))
+
+
+def beard_shadow(figure: Figure) -> Callable[[Floats], Floats]:
+    """Shade of a shaven beard on men: jaw, chin and upper lip a little darker, the lips left out."""
+    if figure.female:
+        return lambda points: np.ones(len(points))
+    frame = head_frame(figure)
+
+    def shade(points: Floats) -> Floats:
+        p = frame.to_head(points)
+        edge = 158.9 - 0.10 * np.abs(p[:, 0]) + 0.75 * np.clip(4.5 - p[:, 2], 0, 6)
+        low = np.clip((p[:, 1] - 150.6) / 1.5, 0, 1) * np.clip((edge - p[:, 1]) / 1.6, 0, 1)
+        return 1 - 0.17 * low * np.clip((p[:, 2] + 0.5) / 2.0, 0, 1)
+
+    return shade
 
 
 def skull_field(female: bool) -> Field:

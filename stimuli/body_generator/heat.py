@@ -19,11 +19,11 @@ from stimuli.skeleton import JOINTS, Floats
 
 HEAT = 1.6  # strength of the pull of the nearest bone; larger = narrower transitions at the joints
 NEIGHBOURS = 6
-HINGE_SHARPNESS = 1.4  # above 1: knees and elbows bend in a narrower band and keep more of their volume
+ELBOW, KNEE = 2.0, 1.4  # sharpness: above 1 a hinge bends in a narrower band and keeps more of its volume
 _HINGES = tuple(
-    (JOINTS.index(side + upper), JOINTS.index(side + lower))
+    (JOINTS.index(side + upper), JOINTS.index(side + lower), sharpness)
     for side in ("left", "right")
-    for upper, lower in (("UpperArm", "LowerArm"), ("UpperLeg", "LowerLeg"))
+    for upper, lower, sharpness in (("UpperArm", "LowerArm", ELBOW), ("UpperLeg", "LowerLeg", KNEE))
 )
 MIRROR_JOINT = np.array(
     [JOINTS.index(n.replace("left", "right") if n.startswith("left") else n.replace("right", "left")) for n in JOINTS]
@@ -65,9 +65,9 @@ def weights_at(heat: Heat, points: Floats) -> tuple[Integers, Floats]:
     from point to point (plain "best four" tears visible seams).
     """
     dense = 0.5 * (_interpolated(heat, points) + _interpolated(heat, points * (-1, 1, 1))[:, MIRROR_JOINT])
-    for upper, lower in _HINGES:
+    for upper, lower, sharpness in _HINGES:
         pair = dense[:, [upper, lower]]
-        sharp = pair**HINGE_SHARPNESS
+        sharp = pair**sharpness
         dense[:, [upper, lower]] = (
             pair.sum(axis=1, keepdims=True) * sharp / np.maximum(sharp.sum(axis=1, keepdims=True), 1e-30)
         )

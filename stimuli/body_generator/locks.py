@@ -84,7 +84,7 @@ def _as_strips(
     lean = 0.75 * across
     n = np.stack([normals - lean, normals, normals + lean], axis=2)
     n /= np.linalg.norm(n, axis=-1, keepdims=True)
-    tone = rng.uniform(0.72, 1.0, (count, 1, 1))
+    tone = rng.uniform(0.62, 1.0, (count, 1, 1))
     depth = (0.62 + 0.38 * np.sin(np.pi * np.clip(0.1 + 0.65 * t, 0, 1)))[None, :, None]
     shade = tone * depth * np.array([0.62, 1.0, 0.62])
     i = np.arange(count * rings * 3).reshape(count, rings, 3)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from stimuli.body_generator.fields import Field, grown, join, mirrored
 from stimuli.body_generator.figure import Figure
 from stimuli.body_generator.garments import clothes
-from stimuli.body_generator.head import head
+from stimuli.body_generator.head import beard_shadow, head
 from stimuli.body_generator.limbs import arm, laces, shoe, sole
 from stimuli.skeleton import Floats
 
@@ -32,6 +33,11 @@ class Part:
     spacing: float
     budgets: tuple[int, int, int]
     twin: bool
+    paint: Callable[[Floats], Floats]  # shade (N,) put on points (N, 3), 1 = none
+
+
+def _unpainted(points: Floats) -> Floats:
+    return np.ones(len(points))
 
 
 def parts_of(figure: Figure) -> tuple[tuple[Part, ...], Field]:
@@ -55,6 +61,7 @@ def parts_of(figure: Figure) -> tuple[tuple[Part, ...], Field]:
         budgets: tuple[int, int, int],
         twin: bool = False,
         plain: Field | None = None,
+        paint: Callable[[Floats], Floats] = _unpainted,
     ) -> Part:
         return Part(
             name,
@@ -66,6 +73,7 @@ def parts_of(figure: Figure) -> tuple[tuple[Part, ...], Field]:
             spacing,
             budgets,
             twin,
+            paint,
         )
 
     wide = sleeve_end[0] + 11
@@ -81,6 +89,7 @@ def parts_of(figure: Figure) -> tuple[tuple[Part, ...], Field]:
             0.38,
             (4800, 1500, 330),
             plain=head(figure, grown(worn.chest, -0.7)),
+            paint=beard_shadow(figure),
         ),
         part("arm", "skin", left_arm, arm_low, arm_high, 0.32, (1600, 480, 140), True),
         part(

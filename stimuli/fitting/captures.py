@@ -70,9 +70,7 @@ def capture(clip: Clip) -> Walk:
     )
 
 
-def average_stride(
-    signals: dict[str, Floats], right: Sequence[int], left: Sequence[int], leg_length: float
-) -> Floats:
+def average_stride(signals: dict[str, Floats], right: Sequence[int], left: Sequence[int], leg_length: float) -> Floats:
     """(S, C) coefficients of the mean of all strides, those begun by the left foot mirrored.
 
     signals: per frame; midline ones under their segment's name (T, 3), sided ones as "left..." and "right...";
@@ -206,7 +204,18 @@ def _stride(signals: dict[str, Floats], first: int, last: int, mirrored: bool, l
     for name in ("hips", "spine", "chest", "neck", "head", "hips_shift"):
         columns.append(sampled(name))
     side = "left" if mirrored else "right"
-    for name in ("shoulder", "upperArm", "lowerArm", "hand", "thigh", "shank", "foot", "foot_yaw", "knee_yaw", "foot_shift"):
+    for name in (
+        "shoulder",
+        "upperArm",
+        "lowerArm",
+        "hand",
+        "thigh",
+        "shank",
+        "foot",
+        "foot_yaw",
+        "knee_yaw",
+        "foot_shift",
+    ):
         columns.append(sampled(side + name))
     stride = np.concatenate(columns, axis=1)
     assert stride.shape[1] == len(SIGNALS) and len(MIDLINE) == 16

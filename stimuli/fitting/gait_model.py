@@ -50,14 +50,22 @@ def fit(walks: Sequence[Walk], standing: Floats) -> GaitModel:
     slope, _ = np.polyfit(lengths, frequencies, 1)
     residuals = frequencies - np.mean(frequencies) - slope * (lengths - np.mean(lengths))
     frame = GaitModel(
-        effects=np.zeros((4, 0, 0)), offsets=np.zeros((0, 0, 0)), people=(), stance=np.zeros(4),
-        centre=np.array([np.mean(lengths), np.mean(frequencies)]), cadence_slope=float(slope),
-        cadence_limit=2.0 * float(np.std(residuals)), length_range=np.array([lengths.min(), lengths.max()]), standing=standing,
+        effects=np.zeros((4, 0, 0)),
+        offsets=np.zeros((0, 0, 0)),
+        people=(),
+        stance=np.zeros(4),
+        centre=np.array([np.mean(lengths), np.mean(frequencies)]),
+        cadence_slope=float(slope),
+        cadence_limit=2.0 * float(np.std(residuals)),
+        length_range=np.array([lengths.min(), lengths.max()]),
+        standing=standing,
     )
-    design = np.array([
-        [*frame.predictors(step, walk.sex), float(walk.laboratory == "CMU")]
-        for step, walk in zip(steps, walks, strict=True)
-    ])
+    design = np.array(
+        [
+            [*frame.predictors(step, walk.sex), float(walk.laboratory == "CMU")]
+            for step, walk in zip(steps, walks, strict=True)
+        ]
+    )
     people = tuple(sorted({walk.person for walk in walks}))
     coefficients = np.array([walk.coefficients for walk in walks])
     effects = np.zeros((4, *coefficients.shape[1:]))
@@ -79,18 +87,38 @@ def fit(walks: Sequence[Walk], standing: Floats) -> GaitModel:
         if name in CAPTURED_MEAN:
             effects[0, index, 0] = np.radians(CAPTURED_MEAN[name])
     measured = [n for n, walk in enumerate(walks) if not np.isnan(walk.stance_share)]
-    stance, _ = _mixed_fit(design[np.ix_(measured, [0, 1, 2, 3])], np.array([[walks[n].stance_share] for n in measured]),
-                           [walks[n].person for n in measured], RIDGE[:4])
-    return GaitModel(effects, offsets, people, stance[:, 0], frame.centre, frame.cadence_slope, frame.cadence_limit,
-                     frame.length_range, standing)
+    stance, _ = _mixed_fit(
+        design[np.ix_(measured, [0, 1, 2, 3])],
+        np.array([[walks[n].stance_share] for n in measured]),
+        [walks[n].person for n in measured],
+        RIDGE[:4],
+    )
+    return GaitModel(
+        effects,
+        offsets,
+        people,
+        stance[:, 0],
+        frame.centre,
+        frame.cadence_slope,
+        frame.cadence_limit,
+        frame.length_range,
+        standing,
+    )
 
 
 def save(model: GaitModel, path: Path) -> None:
     """Writes the coefficients in single precision, without a time stamp."""
     np.savez_compressed(
-        path, effects=model.effects.astype(np.float32), offsets=model.offsets.astype(np.float32),
-        people=np.array(model.people), stance=model.stance, centre=model.centre, cadence_slope=model.cadence_slope,
-        cadence_limit=model.cadence_limit, length_range=model.length_range, standing=model.standing,
+        path,
+        effects=model.effects.astype(np.float32),
+        offsets=model.offsets.astype(np.float32),
+        people=np.array(model.people),
+        stance=model.stance,
+        centre=model.centre,
+        cadence_slope=model.cadence_slope,
+        cadence_limit=model.cadence_limit,
+        length_range=model.length_range,
+        standing=model.standing,
     )
 
 

@@ -119,9 +119,7 @@ def _signals(markers: Markers, standing: Markers) -> tuple[dict[str, Floats], fl
         knuckles = 0.5 * (mark["HM2"] + mark["HM5"])
         arm = MODEL_ARM * (sign, 1.0, 1.0)
         shoulder = mark["SAE"] - (0.0, SHOULDER_DROP, 0.0)
-        for part, bone in (
-            ("upperArm", elbow - shoulder), ("lowerArm", wrist - elbow), ("hand", knuckles - wrist)
-        ):
+        for part, bone in (("upperArm", elbow - shoulder), ("lowerArm", wrist - elbow), ("hand", knuckles - wrist)):
             signals[side + part] = to_exponential(shortest_arc(np.broadcast_to(arm, bone.shape), bone))
         lengths.append(float(np.mean(np.linalg.norm(thigh, axis=1) + np.linalg.norm(shank, axis=1))))
         inclinations.append([np.mean(signals[f"{side}thigh"]), np.mean(signals[f"{side}shank"])])

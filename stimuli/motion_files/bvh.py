@@ -87,6 +87,7 @@ def _read_hierarchy(path: Path, lines: list[str]) -> tuple[list[_Joint], int]:
         raise MotionFileError(f"{path}, line 1: a BVH file begins with HIERARCHY, this one with {lines[0][:30]!r}")
     joints: list[_Joint] = []
     open_joints: list[int] = []
+    opened = 0  # joints whose brace has been met
     for number, line in enumerate(lines[1:], start=2):
         words = line.replace("{", " { ").replace("}", " } ").split()
         place = f"{path}, line {number}"
@@ -102,7 +103,10 @@ def _read_hierarchy(path: Path, lines: list[str]) -> tuple[list[_Joint], int]:
                 _check_place(place, keyword, named, parent, joints)
                 joints.append(_Joint(f"{joints[parent].name} end" if keyword == "END" else named, parent))
             elif keyword == "{":
+                if len(joints) == opened:
+                    raise MotionFileError(f"{place}: an opening brace without ROOT, JOINT or End Site before it")
                 open_joints.append(len(joints) - 1)
+                opened = len(joints)
             elif keyword == "}":
                 if not open_joints:
                     raise MotionFileError(f"{place}: a closing brace without an opening one; export the file again")

@@ -52,7 +52,7 @@ def _read(path: Path) -> bytes:
 
 
 def _parameters(path: Path, data: bytes, start: int) -> Parameters:
-    """"GROUP:NAME" -> type, dimensions and bytes, from records that all lie inside the file."""
+    """ "GROUP:NAME" -> type, dimensions and bytes, from records that all lie inside the file."""
     groups: dict[int, str] = {}
     found: dict[tuple[int, str], tuple[int, tuple[int, ...], bytes]] = {}
     place = start + 4

@@ -83,9 +83,9 @@ def read_array(document: Document, index: object) -> Floats:
     """(count, width) float64 of an accessor: strides, normalised integers, sparse and missing buffers included."""
     accessor = document.item("accessors", index)
     place = f"{document.path}: accessors[{index}]"
-    kind, width = TYPES.get(accessor.get("componentType", 0)), WIDTHS.get(str(accessor.get("type")))
-    count = accessor.get("count")
-    if kind is None or width is None or not isinstance(count, int) or not 0 < count * width <= LARGEST:
+    kind, width = TYPES.get(whole(accessor.get("componentType"))), WIDTHS.get(str(accessor.get("type")))
+    count = whole(accessor.get("count"))
+    if kind is None or width is None or not 0 < count * width <= LARGEST:
         raise MotionFileError(f"{place} has a type or count that glTF 2.0 does not know; export the file again")
     if "bufferView" in accessor:
         values = _view(document, accessor["bufferView"], accessor.get("byteOffset", 0), kind, count, width, place)
@@ -99,6 +99,11 @@ def read_array(document: Document, index: object) -> Floats:
     if not np.all(np.isfinite(numbers)):
         raise MotionFileError(f"{place} holds a value that is no finite number; export the file again")
     return numbers
+
+
+def whole(value: object) -> int:
+    """A JSON value as a whole number, -1 if it is none; true and false are none, though Python counts with them."""
+    return value if isinstance(value, int) and not isinstance(value, bool) else -1
 
 
 def _with_sparse(document: Document, sparse: Any, values: Any, place: str) -> Any:
@@ -128,7 +133,7 @@ def _view(document: Document, view_index: object, offset: Any, kind: str, count:
     numbers = [offset, count, view.get("byteOffset", 0), view.get("byteLength", 0)]
     size = np.dtype(kind).itemsize * width
     stride = view.get("byteStride") or size
-    if not all(isinstance(n, int) and n >= 0 for n in (*numbers, stride)) or stride < size:
+    if not all(whole(n) >= 0 for n in (*numbers, stride)) or stride < size:
         raise MotionFileError(f"{place} has offsets or a stride that are no sizes in bytes; export the file again")
     start = numbers[2] + offset
     end = start + stride * (count - 1) + size

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from stimuli.clip import Clip
 from stimuli.motion_files.building import build_clip
 from stimuli.motion_files.errors import MotionFileError
-from stimuli.motion_files.gltf_buffers import Document, read_array, read_document
+from stimuli.motion_files.gltf_buffers import Document, read_array, read_document, whole
 from stimuli.motion_files.sampling import rate_meant
 from stimuli.motion_files.world_motion import motion_from_world, parents_first
 from stimuli.rotations import from_matrix, normalise, slerp, to_matrix
@@ -114,7 +114,7 @@ def _nodes(document: Document) -> _Nodes:
     }
     for index, node in enumerate(items):
         for child in node.get("children", []) if isinstance(node.get("children", []), list) else []:
-            if not isinstance(child, int) or not 0 <= child < count:
+            if not 0 <= whole(child) < count:
                 raise MotionFileError(f"{document.path}: nodes[{index}] has a child {child} that is not in the file")
             parents[child] = index
         if "matrix" in node:
@@ -164,9 +164,11 @@ class _Channel:
 
 
 def _channels(document: Document, animation: dict[str, Any], count: int) -> list[_Channel]:
-    samplers = animation.get("samplers", [])
+    samplers, listed = animation.get("samplers"), animation.get("channels")
+    if not isinstance(samplers, list) or not isinstance(listed, list):
+        raise MotionFileError(f"{document.path}: its animation has no lists of samplers and channels; export it again")
     channels = []
-    for number, channel in enumerate(animation.get("channels", [])):
+    for number, channel in enumerate(listed):
         place = f"{document.path}: channel {number} of its animation"
         try:
             target, sampler = channel["target"], samplers[channel["sampler"]]
@@ -175,9 +177,9 @@ def _channels(document: Document, animation: dict[str, Any], count: int) -> list
             ends = sampler["input"], sampler["output"]
         except (KeyError, TypeError, IndexError, AttributeError) as error:
             raise MotionFileError(f"{place} does not say what it moves; export the file again") from error
-        if node is None or what not in PATHS:
+        if node is None or not isinstance(what, str) or what not in PATHS:
             continue
-        if not isinstance(node, int) or not 0 <= node < count or interpolation not in ("LINEAR", "STEP", "CUBICSPLINE"):
+        if not 0 <= whole(node) < count or interpolation not in ("LINEAR", "STEP", "CUBICSPLINE"):
             raise MotionFileError(f"{place} moves a node or interpolates in a way the file does not have")
         times, keys = read_array(document, ends[0])[:, 0], read_array(document, ends[1])
         per_key = 3 if interpolation == "CUBICSPLINE" else 1
@@ -253,7 +255,7 @@ def _joints(document: Document, nodes: _Nodes, channels: list[_Channel]) -> tupl
     bind: dict[int, Floats] = {}
     for skin in document.items("skins"):
         joints = skin.get("joints", [])
-        if not isinstance(joints, list) or not all(isinstance(j, int) and 0 <= j < len(nodes.names) for j in joints):
+        if not isinstance(joints, list) or not all(0 <= whole(j) < len(nodes.names) for j in joints):
             raise MotionFileError(f"{document.path}: a skin names joints that are not in the file; export it again")
         if len(joints) > len(best):
             best, bind = list(dict.fromkeys(joints)), {}

@@ -33,7 +33,11 @@ def pelvis_axes(paths: Mapping[str, Floats]) -> tuple[Floats, Floats, Floats, Fl
     paths: place -> (T, 3) m, with left_asis, right_asis and psis markers or the sacrum
     """
     left_front, right_front = paths["left_asis"], paths["right_asis"]
-    back = 0.5 * (paths["left_psis"] + paths["right_psis"]) if {"left_psis", "right_psis"} <= set(paths) else paths["sacrum"]
+    back = (
+        0.5 * (paths["left_psis"] + paths["right_psis"])
+        if {"left_psis", "right_psis"} <= set(paths)
+        else paths["sacrum"]
+    )
     middle = 0.5 * (left_front + right_front)
     left = unit(left_front - right_front)
     ahead = middle - back
@@ -48,7 +52,11 @@ def joint_centres(paths: Mapping[str, Floats]) -> dict[str, Floats]:
     markers of both sides are needed.
     """
     middle, left, up, forward = pelvis_axes(paths)
-    back = 0.5 * (paths["left_psis"] + paths["right_psis"]) if {"left_psis", "right_psis"} <= set(paths) else paths["sacrum"]
+    back = (
+        0.5 * (paths["left_psis"] + paths["right_psis"])
+        if {"left_psis", "right_psis"} <= set(paths)
+        else paths["sacrum"]
+    )
     width = np.median(np.linalg.norm(paths["left_asis"] - paths["right_asis"], axis=-1))
     depth = np.median(np.linalg.norm(middle - back, axis=-1))
     centres: dict[str, Floats] = {}

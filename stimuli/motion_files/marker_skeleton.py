@@ -126,7 +126,11 @@ def _first_guess(paths: dict[str, Floats], centres: dict[str, Floats], joints: t
     _, left, up, _ = pelvis_axes(paths)
     guess = {"hips": _axes(up * 0 + up, left)}
     if "spine" in joints:
-        shoulders = paths["left_shoulder"] - paths["right_shoulder"] if {"left_shoulder", "right_shoulder"} <= set(paths) else left
+        shoulders = (
+            paths["left_shoulder"] - paths["right_shoulder"]
+            if {"left_shoulder", "right_shoulder"} <= set(paths)
+            else left
+        )
         trunk = _axes(centres["neck"] - centres["spine"], shoulders)
         guess.update({joint: trunk for joint in ("spine", "chest", "neck", "head") if joint in joints})
     for side, sign in (("left", 1.0), ("right", -1.0)):

@@ -98,3 +98,18 @@ def test_what_cannot_be_simulated_is_said(study: dict[str, Any]) -> None:
     with pytest.raises(AnalysisError, match="no study file"):
         power_by_simulation("nowhere.yaml", experiments=5)
     assert np.isfinite(power_by_simulation(study, experiments=5)["power"]).all()
+
+
+@pytest.mark.slow
+def test_p_values_are_uniform_when_every_observer_has_one_walk_ratio(study: dict[str, Any]) -> None:
+    from scipy import stats
+
+    same = {actor: {"mean": 0.0064, "sd": 0.0003} for actor in ("F1", "F2", "M1", "M2")}
+    wide = {**study["task"], "range": {"minimum": 20, "maximum": 400}}
+    alike = {**study["simulation"], "preferred_walk_ratio": same, "shared": 1.0}
+    model = experiment_model({**study, "task": wide, "simulation": alike})
+    found = many_anovas(cell_means_of(model, 9, range(1500)), model.design)
+    for effect in ("start", "sex", "start:sex"):  # one df: exact
+        assert stats.kstest(found[effect], "uniform").pvalue > 0.005, effect
+    for effect in ("actor", "speed", "actor:speed"):  # Greenhouse-Geisser: conservative by a little
+        assert 0.025 < np.mean(found[effect] < 0.05) < 0.065, effect

@@ -112,6 +112,18 @@ def test_a_data_folder_that_cannot_be_made_is_said_before_anything_starts(tmp_pa
         opened(tmp_path)
 
 
+@pytest.mark.parametrize("left", [b"", b'{"kind":"header","st'])
+def test_a_run_killed_before_its_header_was_whole_begins_anew_and_keeps_the_scrap(tmp_path, left):
+    folder = tmp_path / "walk_ratio" / "sourcedata" / "sub-P01" / "run-1"
+    folder.mkdir(parents=True)
+    (folder / "journal.jsonl").write_bytes(left)
+    run = opened(tmp_path)
+    play(run)
+    assert run.run.number == 1
+    assert (folder / "journal.torn-1").read_bytes() == left
+    assert journal_lines(run.run.journal)[0][-2]["reason"] == "finished"
+
+
 CHILD = """
 import sys
 from pathlib import Path

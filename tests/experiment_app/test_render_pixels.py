@@ -84,8 +84,7 @@ def test_many_walkers_are_drawn_at_their_places(context: moderngl.Context, rende
     camera = Camera("front", distance=9.0)
     empty_side = Scene((WALKER,), camera)
     walkers = [WALKER] + [
-        replace(WALKER, actor=("F1", "M1")[i % 2], place=(0.6 * (i - 5.5) + 0.1, -0.8), phase=i / 12)
-        for i in range(11)
+        replace(WALKER, actor=("F1", "M1")[i % 2], place=(0.6 * (i - 5.5) + 0.1, -0.8), phase=i / 12) for i in range(11)
     ]
     alone, together = picture(context, renderer, empty_side), picture(context, renderer, Scene(tuple(walkers), camera))
     changed = np.abs(alone.astype(int) - together).max(axis=2) > 40

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import moderngl
 import numpy as np
@@ -43,7 +44,8 @@ def context() -> Iterator[moderngl.Context]:
 
 def test_skinning_on_the_gpu_is_skinning_in_numpy(context: moderngl.Context) -> None:
     """Positions within 0.01 mm, normals within 1e-5, for two walkers in one draw."""
-    walkers = tuple(Walker("M1", 1.3, 110.0, phase, distance=2.0, place=(x, 0.0)) for x, phase in ((0.0, 0.1), (1.0, 0.6)))
+    first = Walker("M1", 1.3, 110.0, 0.1, distance=2.0)
+    walkers = (first, replace(first, phase=0.6, place=(1.0, 0.0)))
     drawn = drawn_walkers(Scene(walkers))
     surfaces = drawn[0].body.levels[0]
     vertices, _ = packed(surfaces)
@@ -61,7 +63,8 @@ def test_skinning_on_the_gpu_is_skinning_in_numpy(context: moderngl.Context) -> 
     form = SHADOW_FORMAT.replace("12x", "3f4", 1)
     array = context.vertex_array(program, [(buffer, form, SHADOW_NAMES[0], "normal", *SHADOW_NAMES[1:])])
     result = context.buffer(reserve=2 * len(vertices) * 24)
-    array.transform(result, moderngl.POINTS, instances=2)
+    context.simple_framebuffer((4, 4)).use()  # without a window nothing runs unless some framebuffer is bound
+    array.transform(result, moderngl.POINTS, vertices=len(vertices), instances=2)
     got = np.frombuffer(result.read(), np.float32).reshape(2, len(vertices), 2, 3)
 
     for one, walker in zip(got, drawn, strict=True):

@@ -6,7 +6,7 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from stimuli.bodies import BodyError, body_names, hair_names, load_body, scaled
+from stimuli.bodies import BodyError, body_names, hair_names, load_body, scaled, with_girths
 from stimuli.body_files.baked import read_baked
 from stimuli.skeleton import JOINTS, PARENTS
 from stimuli.skinning import skin
@@ -202,3 +202,26 @@ def test_scaling_is_uniform_and_moves_the_joints_too():
 def test_a_stature_that_is_no_persons_is_refused(stature):
     with pytest.raises(BodyError, match="is it in metres"):
         scaled(load_body("man"), stature)
+
+
+def test_a_stouter_body_has_a_wider_waist_and_stands_on_the_same_feet():
+    body = load_body("man")
+    stout = with_girths(body, {"spine": 1.3, "hips": 1.2})
+    spine = body.skeleton.positions[JOINTS.index("spine")]
+    near = np.abs(surface(body, "shirt").positions[:, 1] - spine[1]) < 0.03
+    before, after = (np.ptp(surface(b, "shirt").positions[near][:, 0]) for b in (body, stout))
+    assert 1.12 < after / before < 1.32
+    assert np.array_equal(stout.skeleton.positions, body.skeleton.positions)
+    assert np.allclose(surface(stout, "soles").positions, surface(body, "soles").positions, atol=1e-9)
+
+
+def test_girths_of_one_change_nothing():
+    body = load_body("woman")
+    same = with_girths(body, {"spine": 1.0, "leftUpperLeg": 1.0})
+    assert np.allclose(same.levels[0][0].positions, body.levels[0][0].positions, atol=1e-12)
+
+
+@pytest.mark.parametrize("girths", [{"tail": 1.1}, {"leftFoot": 1.2}, {"spine": 9.0}, {"spine": float("nan")}])
+def test_girths_that_make_no_person_are_refused(girths):
+    with pytest.raises(BodyError):
+        with_girths(load_body("man"), girths)

@@ -76,7 +76,7 @@ def matched(kind):
 
 @needs_captures
 def test_heel_strikes_are_within_20_ms_of_the_files_events():
-    """149 strikes in 32 trials of four laboratories; one in thirty differs more, as laboratories do among each other."""
+    """149 strikes in 32 trials of four laboratories, which differ among each other; one in thirty is further off."""
     differences, missed = matched("strike")
     assert missed <= 12  # in the first or last 50 ms of a file
     assert abs(np.median(differences)) < 0.005

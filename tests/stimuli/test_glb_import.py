@@ -1,6 +1,7 @@
 """Characters from other programs: joints by name or by shape, any axes and units, and the reference bounding boxes."""
 
 import csv
+import json
 import os
 from dataclasses import replace
 from importlib.resources import files
@@ -67,8 +68,6 @@ def test_a_character_in_other_units_with_z_up_stands_upright_in_metres(tmp_path,
 
 
 def test_a_text_file_with_its_data_beside_it_reads_the_same(tmp_path):
-    import json
-
     container = read_container(MAN, "man")
     container.document["buffers"][0]["uri"] = "body%20data.bin"
     (tmp_path / "body data.bin").write_bytes(container.buffers[0])
@@ -78,13 +77,13 @@ def test_a_text_file_with_its_data_beside_it_reads_the_same(tmp_path):
 
 @pytest.mark.parametrize("uri", ["../secret.bin", "/etc/hostname", "%2e%2e/secret.bin"])
 def test_data_outside_the_files_own_folder_is_refused(tmp_path, uri):
-    text = '{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4, "uri": "%s"}]}' % uri
+    text = json.dumps({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4, "uri": uri}]})
     with pytest.raises(BodyError, match="outside the file's own folder"):
         open_container(saved(tmp_path, text.encode(), "person.gltf"))
 
 
 def test_fbx_is_refused_with_the_command_that_converts_it(tmp_path):
-    with pytest.raises(BodyError, match="FBX2glTF --binary walker.fbx"):
+    with pytest.raises(BodyError, match=r"FBX2glTF --binary walker\.fbx"):
         import_body(saved(tmp_path, b"Kaydara FBX Binary  \x00", "walker.fbx"))
 
 

@@ -1,5 +1,6 @@
 #version 330 core
-// Linear light to sRGB codes (IEC 61966-2-1), with half a code of ordered noise so that the sky does not band.
+// Linear light to sRGB codes (IEC 61966-2-1), with 0.4 codes of ordered noise either way: the sky does not band,
+// and light that is exactly a code stays that code.
 // The formula stands here because drivers' own encoding may be off by one code.
 uniform sampler2D linear_picture;
 layout(location = 0) out vec4 pixel;
@@ -13,5 +14,5 @@ void main() {
     vec3 low = light * 12.92;
     vec3 high = 1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055;
     vec3 encoded = mix(high, low, vec3(lessThanEqual(light, vec3(0.0031308))));
-    pixel = vec4(encoded + (noise(gl_FragCoord.xy) - 0.5) * 0.9 / 255.0, 1.0);
+    pixel = vec4(encoded + (noise(gl_FragCoord.xy) - 0.5) * 0.8 / 255.0, 1.0);
 }

@@ -1,0 +1,45 @@
+"""How the report writes single values in its tables."""
+
+from __future__ import annotations
+
+import math
+
+from analysis import apa
+from analysis.markup import Cell
+from analysis.results import PlannedResults, unit_decimals
+
+
+def str_right(value: object) -> str:
+    return str(value)
+
+
+def p_cell(value: float) -> str:
+    if not math.isfinite(value):
+        return "–"
+    return "< .001" if value < 0.001 else apa.share(value, 3)
+
+
+def share_cell(value: float) -> str:
+    return apa.share(value) if math.isfinite(value) else "–"
+
+
+def epsilon_cell(value: float) -> str:
+    return "–" if not math.isfinite(value) else apa.share(value) if value < 0.995 else "1"
+
+
+def unit_cell(results: PlannedResults) -> tuple[Cell, int]:
+    """How values in the unit of the measure are written, and with how many decimals."""
+    decimals = unit_decimals(results)
+    return (lambda value: apa.number(value, decimals)), decimals
+
+
+def degrees_cell(value: float) -> str:
+    return apa.degrees(value) if math.isfinite(value) else "–"
+
+
+def bayes_cell(value: float) -> str:
+    return "–" if not math.isfinite(value) else "> 10 000" if value > 1e4 else apa.figures(value)
+
+
+def interval(low: float, high: float, decimals: int) -> str:
+    return f"[{apa.number(low, decimals)}, {apa.number(high, decimals)}]"

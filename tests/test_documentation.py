@@ -1,0 +1,84 @@
+"""The documentation is true: commands in the README run, the YAML in the pages is valid, links lead somewhere."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from experiment_app.command import run
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CHANGELOG.md"]
+
+
+def blocks(path: Path, language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", path.read_text(encoding="utf-8"), re.S)
+
+
+@pytest.mark.slow
+def test_the_readmes_path_from_copying_a_study_to_its_report_works(tmp_path, monkeypatch, capfd):
+    """Every gaitlab line of the README in order, but for the demo (tested below) and the window."""
+    monkeypatch.chdir(tmp_path)
+    lines = [line for block in blocks(ROOT / "README.md", "sh") for line in block.splitlines()]
+    commands = [line.split("#")[0].strip() for line in lines if line.startswith("gaitlab ")]
+    (change,) = blocks(ROOT / "README.md", "yaml")
+    assert [c.split()[1] for c in commands] == [
+        "demo", "copy", "check", "simulate", "analyse", "run", "analyse",
+    ]  # fmt: skip
+    for command in commands:
+        words = shlex.split(command)[1:]
+        if words[0] == "run" or words[0] == "demo" or words[1].startswith("data/"):
+            continue
+        assert run(words) == 0, (command, capfd.readouterr())
+        if words[0] == "copy":
+            _apply(tmp_path / "my_study.yaml", change)
+    assert (tmp_path / "report_simulated" / "report.html").exists()
+    assert (tmp_path / "balance.png").exists()
+
+
+def _apply(path: Path, change: str) -> None:
+    """Makes the README's change to a study file as a person would: replaces the lines with the same keys."""
+    text = path.read_text(encoding="utf-8")
+    for line in change.splitlines():
+        if not line.startswith("factors"):
+            key = line.split(":")[0]
+            text = re.sub(rf"^{key}:.*$", line, text, count=1, flags=re.M)
+    path.write_text(text, encoding="utf-8")
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda p: p.name)
+def test_links_and_pictures_lead_somewhere(path):
+    for target in re.findall(r"\]\(([^)#]+)\)", path.read_text(encoding="utf-8")):
+        if "://" not in target:
+            assert (path.parent / target).exists(), target
+
+
+def test_the_yaml_of_the_study_file_page_is_accepted_in_a_study():
+    from protocols.consistency import inconsistencies
+    from protocols.study_file import parse_study
+    from tests.protocols.studies import shipped_text
+
+    questions, keys, analysis = blocks(ROOT / "docs" / "study-file.md", "yaml")
+    text = shipped_text()
+    start, end = text.index("analysis:\n"), text.index("# Simulated observers")
+    text = text[:start] + analysis + "\n" + text[end:]
+    start, end = text.index("  questions:"), text.index("# Design")
+    text = text[:start] + "".join(f"  {line}\n" for line in questions.splitlines()) + "\n" + text[end:]
+    text = re.sub(r"  keys: .*", f"  {keys.strip()}", text)
+    file = parse_study("page.yaml", text)
+    assert inconsistencies(file.study) == []
+
+
+@pytest.mark.slow
+def test_the_demo_without_a_screen_ends_with_a_report_tables_a_picture_and_a_film(tmp_path, capfd):
+    assert run(["demo", "--off-screen", "--folder", str(tmp_path / "demo")]) == 0
+    said = capfd.readouterr().out
+    for name in ("report.html", "anova.csv", "trial.webp"):
+        (path,) = (tmp_path / "demo").rglob(name)
+        assert name in said
+        assert path.stat().st_size > 500
+    assert (tmp_path / "demo" / "pictures" / "trial.png").exists()
+    assert len(list((tmp_path / "demo" / "data").rglob("journal.jsonl"))) == 22
