@@ -34,7 +34,7 @@ class Walker:
 class Camera:
     """Where the scene is seen from.
 
-    view:          a named view that follows the walker (three_quarter, front) or stands still (side, legs).
+    view:          a named view; all follow the walker, legs narrows the field of view to the legs.
     distance:      m from the camera to the walker.
     height:        m above the ground.
     field_of_view: vertical, degrees.

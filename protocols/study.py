@@ -97,7 +97,7 @@ class CameraView(Part):
     """Where the walker is seen from."""
 
     view: Literal["three_quarter", "side", "front", "legs"] = Field(
-        "three_quarter", description="three_quarter and front follow the walker; side and legs too."
+        "three_quarter", description="All follow the walker; legs shows the legs only."
     )
     distance: float = Field(5.0, strict=True, ge=1.0, le=50.0, description="m from camera to walker.")
     height: float = Field(1.6, strict=True, ge=0.1, le=10.0, description="m above the ground.")

@@ -16,7 +16,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from stimuli.blend import CycleTable
+from stimuli.blend import CycleTable, WalkCycle
 from stimuli.blend_tree import Branch, Leaf, Tree
 from stimuli.bodies import load_body
 from stimuli.body import Body
@@ -139,11 +139,7 @@ def _make(person: Person, body: Body) -> Actor:
     model = load_gait_model()
     manner = model.manner(dict(person.manner))
     cycles = [
-        walk_cycle(
-            figure, *walk_coefficients(model, person, manner, figure.leg_length, speed, frequency), speed, frequency
-        )
-        for frequency in METRONOME
-        for speed in CYCLE_SPEEDS
+        _cycle(figure, model, person, manner, speed, frequency) for frequency in METRONOME for speed in CYCLE_SPEEDS
     ]
     return Actor(
         name=person.name,
@@ -160,6 +156,13 @@ def _make(person: Person, body: Body) -> Actor:
         tree=metronome_tree(METRONOME, CYCLE_SPEEDS),
         provenance="modelled",
     )
+
+
+def _cycle(
+    figure: Figure, model: GaitModel, person: Person, manner: Floats, speed: float, frequency: float
+) -> WalkCycle:
+    coefficients, stance = walk_coefficients(model, person, manner, figure.leg_length, speed, frequency)
+    return walk_cycle(figure, coefficients, stance, speed, frequency)
 
 
 def walk_coefficients(

@@ -10,8 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stimuli.skeleton import JOINTS, Floats
+
+Indices = NDArray[np.integer]
 
 UPPER: tuple[str, ...] = tuple(name for name in JOINTS if not name.endswith(("Leg", "Foot", "Toes")))
 """Joints whose rotation a cycle stores; legs follow from hips and feet."""
@@ -94,7 +97,7 @@ def blend_rotations(rotations: Floats, weights: Floats) -> Floats:
     return np.asarray(mean / np.linalg.norm(mean, axis=-1, keepdims=True))
 
 
-def blend_body(table: CycleTable, cycles: Floats, weights: Floats, phase: float) -> tuple[Floats, Floats]:
+def blend_body(table: CycleTable, cycles: Indices, weights: Floats, phase: float) -> tuple[Floats, Floats]:
     """Hips (3,) m and local rotations (13, 4) of the UPPER joints at a phase of the cycle.
 
     cycles, weights: (M,) indices into the table and their weights, summing to 1.
@@ -104,12 +107,12 @@ def blend_body(table: CycleTable, cycles: Floats, weights: Floats, phase: float)
     return row[:3], rotations / np.sqrt(np.einsum("jk,jk->j", rotations, rotations))[:, None]
 
 
-def blend_foot(table: CycleTable, side: int, cycles: Floats, weights: Floats, clock: float) -> Floats:
+def blend_foot(table: CycleTable, side: int, cycles: Indices, weights: Floats, clock: float) -> Floats:
     """(6,) FOOT_CHANNELS of the left (0) or right (1) foot at its own clock."""
     return _sampled(table.feet[side], cycles, weights, clock)
 
 
-def _sampled(rows: Floats, cycles: Floats, weights: Floats, place: float) -> Floats:
+def _sampled(rows: Floats, cycles: Indices, weights: Floats, place: float) -> Floats:
     """Weighted mean over cycles of rows (K, N + 1, C), linear between samples."""
     position = place * (rows.shape[1] - 1)
     sample = min(int(position), rows.shape[1] - 2)

@@ -54,13 +54,13 @@ class Sole:
     def of(cls, skeleton: Skeleton) -> Sole:
         """The sole of a shod foot whose length follows the distance from ankle to toe joint.
 
-        Heel and tip are those of the gaitlab shoe: 28 cm long, 13.5 cm from ankle to toe joint, of which 5.5 cm
-        behind the ankle and 6.0 cm ahead of the toe joint touch the ground.
+        Heel and tip are those of the gaitlab shoe: 28 cm long, 13.5 cm from ankle to toe joint, of which 6.3 cm
+        behind the ankle and 6.8 cm ahead of the toe joint touch the ground.
         """
         positions = skeleton.positions
         ankle, toes = positions[JOINTS.index("rightFoot")], positions[JOINTS.index("rightToes")]
         ball = float(toes[2] - ankle[2])
-        return cls(float(ankle[1]), 0.41 * ball, ball, float(toes[1]), 1.44 * ball)
+        return cls(float(ankle[1]), 0.47 * ball, ball, float(toes[1]), 1.5 * ball)
 
 
 def flattened(pitch: Any) -> Any:

@@ -32,6 +32,7 @@ BEFORE, AFTER = 0.06, 0.16  # s around the furthest reach in which a foot lands
 FAR_REACH = 0.9  # of the range of reach: a foot less far forward at the first frame landed before it
 LEAST_STRIDE_TIME = 0.5  # s; 240 steps/min is no walk
 LEAST_REACH = 0.12  # m peak to peak, foot against pelvis, of the smallest step taken for walking
+FASTEST = 4.5  # m/s; race walkers reach 4.4, so a faster stride is a jump in the data or a wrong unit
 SAME_WALK = 0.6  # of the upper quartile of stride speeds: a slower stride is standing
 SLOWER, LONGER = 0.18, 0.15  # of the others' medians: an end stride beyond either is setting off or stopping
 PATH_CUTOFF = 2.0  # Hz, low-pass of the pelvis' path before its length is taken
@@ -216,6 +217,9 @@ def measure_paths(paths: FootPaths, events: Sequence[FootEvent], name: str = "th
     strides = _strides(paths, events)
     if not strides:
         raise GaitError(f"{name}: no foot strikes the ground twice, so there is no whole stride to measure")
+    strides = [stride for stride in strides if stride.speed <= FASTEST]
+    if not strides:
+        raise GaitError(f"{name}: every stride is faster than {FASTEST:g} m/s, which is no walk; check unit_to_m")
     used, steady = _steady(strides)
     time = sum(stride.time for stride in used)
     travel = sum(stride.travel for stride in used)

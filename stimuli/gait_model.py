@@ -1,6 +1,6 @@
 """The gait model: how a person walks at any speed and step frequency, from coefficients fitted to real captures.
 
-A walk is 42 signals over one gait cycle, each a short Fourier series in phase (Troje 2002; Tilmanne & Dutoit 2010).
+A walk is 34 signals over one gait cycle, each a short Fourier series in phase (Troje 2002; Tilmanne & Dutoit 2010).
 Each Fourier coefficient is a linear function of the step (length and frequency, made dimensionless with the leg
 length after Hof 1996), of sex where the data know it, plus a person's own offset (the residual of a captured
 person, shrunk as in a mixed model). `stimuli/fitting` makes the coefficients; this file only evaluates them and
@@ -22,14 +22,16 @@ from stimuli.skeleton import Floats
 
 GRAVITY = 9.81  # m/s²
 
-MIDLINE: tuple[str, ...] = tuple(
-    f"{segment}_{axis}" for segment in ("hips", "spine", "chest", "neck", "head") for axis in "xyz"
-) + ("hips_shift",)
+MIDLINE: tuple[str, ...] = (
+    *(f"{segment}_{axis}" for segment in ("hips", "spine", "chest", "neck", "head") for axis in "xyz"),
+    "hips_shift",
+)
 """World rotation vectors (rad) of the midline segments, and the sideways shift of the hips in leg lengths."""
 
-SIDED: tuple[str, ...] = tuple(
-    f"{segment}_{axis}" for segment in ("shoulder", "upperArm", "lowerArm", "hand") for axis in "xyz"
-) + ("thigh", "shank", "foot", "foot_yaw", "knee_yaw", "foot_shift")
+SIDED: tuple[str, ...] = (
+    *(f"{segment}_{axis}" for segment in ("shoulder", "upperArm", "lowerArm", "hand") for axis in "xyz"),
+    *("thigh", "shank", "foot", "foot_yaw", "knee_yaw", "foot_shift"),
+)
 """Signals of the RIGHT side: world rotation vectors of the arm (rad); inclination of thigh and shank in the sagittal
 plane (rad, 0 vertical, positive with the lower end forward); pitch of the foot (rad, 0 flat, positive toes up);
 yaw of foot and knee (rad, positive to the left, so negative is outward); sideways place of the ankle in leg lengths."""
@@ -75,7 +77,7 @@ class GaitModel:
     centre:     (2,) step length and step frequency at which the intercept holds
     cadence_slope: expected change of step frequency with step length (both without units)
     cadence_limit: largest cadence residual the data support; beyond it the effect flattens
-    length_range:  (2,) step lengths the data support; beyond it the effect flattens slowly
+    length_range:  (2,) step lengths (over leg length) of the captured walks; outside it the model extrapolates
     standing:      (2,) rad, inclination of thigh and shank of people standing; clinical angles are relative to it
     """
 

@@ -32,7 +32,7 @@ MIRRORED_FOOT = np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0])
 """Sign of each of the FOOT_CHANNELS for the other side."""
 
 BUILT_REACH = 0.9996
-"""Largest hip-ankle distance over leg length in a cycle as built (a knee bent by 4 degrees); blending needs the rest."""
+"""Largest hip-ankle distance over leg length in a cycle as built (knee bent 3.2 degrees); blending needs the rest."""
 
 SWING_GAIN = (0.8, 1.35)
 """How much less or more than captured the stance leg may swing to make a step of the wanted length."""
@@ -251,8 +251,8 @@ def _foot_channels(foot: _Foot, carried: Floats, stride: float, ahead: float, hi
     def on_clock(values: Floats) -> Floats:
         return np.interp(phases, np.append(PHASES, 1.0), np.append(values, values[0]))
 
-    leave = contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / 0.1)
-    least = LEAST_CLEARANCE * contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / 0.15)
+    leave = contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / 0.12)
+    least = LEAST_CLEARANCE * contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / 0.2)
     clearance = least + leave * _soft_positive(on_clock(carried[:, 0] - foot.ankle[:, 1]) - least)
 
     rolled = on_clock(foot.ankle[:, 2]) + ahead

@@ -20,6 +20,15 @@ GREY = np.array([0.5, 0.5, 0.5])
 def import_body(path: Path) -> Body:
     """The person in a .glb or .gltf file, in one level of detail, without textures (their colour factor is kept)."""
     container = open_container(path)
+    try:
+        return _person(container, path)
+    except BodyError:
+        raise
+    except (KeyError, IndexError, TypeError, AttributeError, ValueError, OverflowError) as error:
+        raise BodyError(f"{path.name}: the file breaks glTF's own rules ({type(error).__name__})") from error
+
+
+def _person(container: Container, path: Path) -> Body:
     scene = read_scene(container, path.name)
     skin = _main_skin(scene, path.name)
     worn = _worn(scene)

@@ -115,6 +115,7 @@ def solid_pieces(part: Part, everything: Field, coarseness: float = 1.0) -> list
 
 
 def face_pieces(face: Field, figure: Figure, fineness: float) -> list[Piece]:
+    """Eyes, lashes, brows and lips; `fineness` 1 for close-ups, less for coarser levels."""
     patches = face_patches(face, head_frame(figure), figure.female, fineness)
     return [Piece(p.material, p.mesh, p.normals, p.occlusion) for p in patches]
 

@@ -51,6 +51,7 @@ def style_names(figure: Figure) -> tuple[str, ...]:
 
 
 def style(name: str, female: bool) -> Style:
+    """The haircut of that name, cut for the skull of a woman or a man."""
     return {"short": _short, "cropped": _cropped, "bob": _bob, "ponytail": _ponytail}[name](skull_field(female))
 
 

@@ -66,6 +66,7 @@ class HeadFrame:
 
 
 def head_frame(figure: Figure) -> HeadFrame:
+    """The figure's own head frame."""
     return HeadFrame(figure.head_scale, figure.stature)
 
 

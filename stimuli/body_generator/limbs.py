@@ -140,7 +140,9 @@ def shoe(figure: Figure) -> Field:
     body = join(upper, (shaft, 2.2), (tongue, 1.2))
     toe_cap = capsule(at(15.2, -4.2, 3.4), at(15.2, 4.2, 3.4), 0.12 * k, 0.12 * k)
     shaped = cut(lambda p: smooth_max(body(p), top(p), 0.8), collar_hole, 0.5)
-    return cut(shaped, toe_cap, 0.3)
+    on_sole = half_space((0, -1, 0), (0, 0.9 * k, 0))
+    above = lambda p: smooth_max(shaped(p), on_sole(p), 0.2)  # noqa: E731
+    return cut(above, toe_cap, 0.3)
 
 
 def sole(figure: Figure) -> Field:

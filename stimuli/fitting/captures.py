@@ -218,7 +218,7 @@ def _stride(signals: dict[str, Floats], first: int, last: int, mirrored: bool, l
     ):
         columns.append(sampled(side + name))
     stride = np.concatenate(columns, axis=1)
-    assert stride.shape[1] == len(SIGNALS) and len(MIDLINE) == 16
+    assert stride.shape[1] == len(SIGNALS)
     hips, foot = SIGNALS.index("hips_shift"), SIGNALS.index("foot_shift")
     middle = np.mean(stride[:, hips])
     for column in (hips, foot):

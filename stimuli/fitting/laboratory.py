@@ -68,7 +68,7 @@ def _walk(trial: _Trial, standing: _Trial, row: dict[str, str], events: list[dic
     }
     signals, leg, _ = _signals(trial.markers, standing.markers)
     _, _, posture = _signals(standing.markers, standing.markers)
-    strikes = {side: [int(round(frame)) for frame in marks[side, "Strike"]] for side in ("left", "right")}
+    strikes = {side: [round(frame) for frame in marks[side, "Strike"]] for side in ("left", "right")}
     shares = []
     for side in ("left", "right"):
         first, last = marks[side, "Strike"][:2]

@@ -2,8 +2,8 @@
 
 The pose of every frame minimises the squared distances of all markers and joint centres from where a skeleton of
 constant bone lengths carries them (global optimisation, Lu & O'Connor, J. Biomech. 32, 1999). Solved segment by
-segment: with everything else held, the best rotation of one segment has a closed form (Kabsch, Acta Cryst. A32, 1976), and what
-hangs on it counts as one heavy marker at the next joint. Sweeps repeat until nothing moves.
+segment: with all else held, the best rotation of one segment has a closed form (Kabsch, Acta Cryst. A32, 1976), and
+what hangs on it counts as one heavy marker at the next joint. Sweeps repeat until nothing moves.
 """
 
 from __future__ import annotations

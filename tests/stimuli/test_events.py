@@ -172,6 +172,21 @@ def test_standing_still_is_no_walk():
         measure_paths(paths, ())
 
 
+def test_a_jump_in_the_data_is_no_stride():
+    _, paths = synthetic(0.7, 110.0, seconds=12.0)
+    jump = np.where(np.arange(1200) >= 600, 50.0, 0.0)[:, None] * [0.0, 0.0, 1.0]
+    jumping = FootPaths(paths.pelvis + jump, paths.left_axis, paths.heels + jump, paths.toes + jump, paths.rate)
+    measures = measure_paths(jumping, find_events(paths))
+    assert measures.speed == pytest.approx(0.7 * 110 / 60, rel=0.01)
+
+
+def test_a_wrong_unit_is_named_as_the_likely_reason():
+    _, paths = synthetic()
+    giant = FootPaths(*(10 * p for p in (paths.pelvis, paths.left_axis, paths.heels, paths.toes)), paths.rate)
+    with pytest.raises(GaitError, match="check unit_to_m"):
+        measure_paths(giant, find_events(paths))
+
+
 def test_one_frame_has_no_events():
     _, paths = synthetic()
     one = FootPaths(paths.pelvis[:1], paths.left_axis[:1], paths.heels[:, :1], paths.toes[:, :1], paths.rate)

@@ -117,6 +117,19 @@ def test_garbled_characters_give_vertices_or_a_sentence_but_never_a_crash(change
         assert placed_vertices(scene).shape[1] == 3
 
 
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.tuples(st.integers(20, 40_000), st.integers(0, 255)), min_size=1, max_size=6))
+def test_garbled_characters_are_imported_or_refused_in_one_sentence(tmp_path_factory, changes):
+    data = bytearray(MAN)
+    for place, value in changes:
+        data[place] = value
+    path = saved(tmp_path_factory.mktemp("garbled"), bytes(data))
+    try:
+        import_body(path)
+    except BodyError as error:
+        assert "\n" not in str(error)  # noqa: PT017
+
+
 def test_a_cubic_spline_passes_through_its_keys_and_has_its_tangents():
     """glTF 2.0 appendix C.5: Hermite spline, tangents times the key distance."""
     values = np.array([[0], [1], [2], [3], [5], [0]], dtype=float) * np.ones((1, 3))
