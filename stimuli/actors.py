@@ -60,7 +60,7 @@ class Actor:
     figure: Figure
     table: CycleTable
     tree: Tree
-    provenance: str  # "modelled" or "captured"
+    provenance: str  # "modelled", or which cycles were captured, the licence and the source
 
     @property
     def skeleton(self) -> Skeleton:
@@ -110,15 +110,21 @@ def people() -> dict[str, Person]:
 
 
 def actor_names() -> tuple[str, ...]:
-    """Names of the default actors, the sixteen of the study first."""
-    return tuple(people())
+    """Names of the default actors, the sixteen of the study first, then those imported on this computer."""
+    from stimuli.actor_library import imported_names
+
+    return (*people(), *imported_names())
 
 
 def load_actor(name: str, body: Body | None = None) -> Actor:
-    """A default actor, on the body of their sex unless another is given; the body is scaled to their height.
+    """A default or imported actor, on the body of their sex unless another is given, scaled to their height.
 
-    Cached per name and body. Raises ActorError for a name that is not known.
+    Default actors on their own body are cached. Raises ActorError for a name that is not known.
     """
+    from stimuli.actor_library import actor_of, imported_names, read_stored
+
+    if name in imported_names():
+        return actor_of(read_stored(name), body)
     if name not in people():
         near = get_close_matches(name.upper(), actor_names(), n=1, cutoff=0.5)
         hint = f" Did you mean {near[0]}?" if near else ""

@@ -30,12 +30,15 @@ class Branch:
     parameter: "speed", "step_frequency", ...
     unit:      for messages
     places:    value of the parameter at each child, increasing
+    follows:   steps/min at each child of a branch over speed whose captures leave the step frequency no choice;
+               empty where step frequency is free
     """
 
     parameter: str
     unit: str
     places: tuple[float, ...]
     children: tuple[Leaf | Branch, ...]
+    follows: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         if len(self.places) != len(self.children) or not self.children:
@@ -55,6 +58,8 @@ def blend_weights(tree: Tree, wanted: Mapping[str, float]) -> dict[int, float]:
     if isinstance(tree, Leaf):
         return {tree.cycle: 1.0}
     low, high, share = _neighbours(tree, wanted)
+    if tree.follows:
+        _check_following(tree, wanted, low, high, share)
     if share == 0.0:
         return blend_weights(tree.children[low], wanted)
     if share == 1.0:
@@ -76,6 +81,28 @@ def coverage(tree: Tree) -> dict[str, tuple[float, float]]:
                 known = ranges.get(parameter, (low, high))
                 ranges[parameter] = (max(low, known[0]), min(high, known[1]))
     return ranges
+
+
+def followed_step_frequency(tree: Tree, speed: float) -> float | None:
+    """steps/min that goes with a speed (m/s) where captures leave no choice; None where step frequency is free.
+
+    Raises CoverageError outside the tree.
+    """
+    if isinstance(tree, Leaf) or not tree.follows:
+        return None
+    low, high, share = _neighbours(tree, {tree.parameter: speed})
+    return (1.0 - share) * tree.follows[low] + share * tree.follows[high]
+
+
+def _check_following(branch: Branch, wanted: Mapping[str, float], low: int, high: int, share: float) -> None:
+    """Raises CoverageError for a step frequency that no capture goes with (half a step/min is allowed for)."""
+    there = (1.0 - share) * branch.follows[low] + share * branch.follows[high]
+    asked = wanted["step_frequency"]
+    if abs(asked - there) > 0.5:
+        raise CoverageError(
+            f"step_frequency {asked:g} steps/min was not captured at {wanted[branch.parameter]:g} {branch.unit}: there "
+            f"it is {there:.1f} steps/min; an import with `complete: true` leaves it free"
+        )
 
 
 def _neighbours(branch: Branch, wanted: Mapping[str, float]) -> tuple[int, int, float]:

@@ -26,7 +26,11 @@ SAMPLES = 256
 PHASES = np.arange(SAMPLES) / SAMPLES
 SMOOTHING = 6  # samples each way
 CLOSING = 0.15
+"""Share of swing in which a captured foot comes on to its footprint."""
+
 STEP_TERMS = [0, 3, 4, 7, 8, 11, 12, 15, 16]
+"""Columns of gait_model.basis that repeat every step: 1 and the even harmonics of the cycle."""
+
 
 MIRRORED_FOOT = np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0])
 """Sign of each of the FOOT_CHANNELS for the other side."""
@@ -251,8 +255,8 @@ def _foot_channels(foot: _Foot, carried: Floats, stride: float, ahead: float, hi
     def on_clock(values: Floats) -> Floats:
         return np.interp(phases, np.append(PHASES, 1.0), np.append(values, values[0]))
 
-    leave = contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / 0.12)
-    least = LEAST_CLEARANCE * contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / 0.2)
+    leave = contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / 0.18)
+    least = LEAST_CLEARANCE * contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / 0.4)
     clearance = least + leave * _soft_positive(on_clock(carried[:, 0] - foot.ankle[:, 1]) - least)
 
     rolled = on_clock(foot.ankle[:, 2]) + ahead
@@ -263,7 +267,8 @@ def _foot_channels(foot: _Foot, carried: Floats, stride: float, ahead: float, hi
     far = np.sqrt(np.maximum(reach**2 - up**2 - sideways**2, 0.0))
     places = [(on_clock(hip[:, 2]) + sign * far - rolled) / stride - course for sign in (-1.0, 1.0)]
     travel = _smoothed(np.where(swing > 0.0, np.clip(travel, *places), 0.0)) * _swing_window(swing)
-    travel = travel + contact.smooth_step(swing / 0.1) * (np.clip(travel, *places) - travel)
+    bounded = contact.smooth_step(swing / 0.1) * contact.smooth_step((1.0 - swing) / 0.08)
+    travel = travel + bounded * (np.clip(travel, *places) - travel)
     channels = {
         "pitch": on_clock(foot.pitch),
         "clearance": clearance,
@@ -294,7 +299,7 @@ def _swing_window(progress: Floats) -> Floats:
 
 
 def _smoothed(values: Floats) -> Floats:
-    """A periodic curve (N,) averaged over 3 per cent of the cycle, which takes corners off."""
+    """A periodic curve (N,) averaged over some 2 per cent of the cycle, which takes corners off."""
     kernel = np.hanning(2 * SMOOTHING + 1)
     padded = np.concatenate([values[-SMOOTHING:], values, values[:SMOOTHING]])
     return np.convolve(padded, kernel / kernel.sum(), mode="valid")

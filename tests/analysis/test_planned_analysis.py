@@ -10,8 +10,8 @@ import pandas as pd
 import pytest
 
 from analysis import AnalysisError, anova
+from analysis.exclusions import matching
 from analysis.journal import read_journal, read_study
-from analysis.plan import matching
 from analysis.planned import AnalysisOutcome, analyse
 from tests.analysis.recorded import PERCEIVED, journal_lines, study_text, write_run, write_study
 

@@ -2,7 +2,6 @@
 
 import csv
 import json
-import os
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
@@ -21,7 +20,7 @@ from stimuli.body_files.scene import placed_vertices, read_scene
 from stimuli.skeleton import JOINTS
 
 MAN = files("stimuli").joinpath("data", "bodies", "man.glb").read_bytes()
-MODELS = os.environ.get("GAITLAB_GLTF_MODELS", "")
+MODELS = Path(__file__).parents[2].parent / "shared" / "gltf"
 """Folder with the Khronos sample models and REFERENCE_SKINNED_BBOX.csv; the comparison is skipped without it."""
 
 
@@ -144,12 +143,12 @@ def test_an_animation_of_an_empty_file_is_no_animation():
     assert read_animations(Container({}, ()), "empty") == ()
 
 
-@pytest.mark.skipif(not MODELS, reason="set GAITLAB_GLTF_MODELS to the folder of the reference models")
+@pytest.mark.skipif(not MODELS.exists(), reason="the shared reference models are not here")
 def test_skinned_bounding_boxes_match_the_reference_to_a_millimetre():
-    with (Path(MODELS) / "REFERENCE_SKINNED_BBOX.csv").open() as file:
+    with (MODELS / "REFERENCE_SKINNED_BBOX.csv").open() as file:
         rows = list(csv.DictReader(file))
     for row in rows:
-        container = open_container(Path(MODELS) / row["file"])
+        container = open_container(MODELS / row["file"])
         scene = read_scene(container, row["file"])
         if row["time_s"] != "rest":
             animations = read_animations(container, row["file"])

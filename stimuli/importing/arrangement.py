@@ -1,0 +1,202 @@
+"""Which cycles an actor gets and how they are arranged: captured walks on a grid or a path, the rest modelled.
+
+A grid is a branch over step frequency whose children are branches over speed. Captures that make no grid lie on a
+path: a branch over speed alone, step frequency following. With `complete` the gait model fills the grid around the
+person: what each captured walk does differently from the model counts wherever a wanted walk is near it, and its
+mean, shrunk as in a mixed model, everywhere else. Knows no file and no skeleton.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from stimuli.actors import CYCLE_SPEEDS, METRONOME, Person, walk_coefficients
+from stimuli.gait_model import SIGNALS, load_gait_model
+from stimuli.importing.walks import CapturedWalk
+from stimuli.skeleton import Floats
+
+PERSON_RATIO = 3.0
+"""Variance between people over variance between walks of one person, as the gait model was fitted with."""
+
+BELIEVED = 0.4
+"""Share of the difference from the average person's posture that is believed where it hangs on a rest pose's zero."""
+
+TRUNK = ("hips_x", "spine_x", "chest_x", "neck_x", "head_x")
+LEGS = ("thigh", "shank", "foot_yaw", "knee_yaw")
+
+NEAR_SPEED, NEAR_FREQUENCY = 0.20, 8.0
+"""m/s and steps/min within which a modelled walk is like a captured one."""
+
+SAME_ROW = 3.0
+"""steps/min: walks to one beat of the metronome lie this near to their mean."""
+
+ROW_GAP = 5.0
+"""steps/min: between rows, half the metronome's interval."""
+
+SAME_SPEED = 0.04
+"""m/s: walks of one row nearer than this are averaged."""
+
+CROWDED = 0.08
+"""m/s: no modelled cycle is put this near to a captured one."""
+
+
+@dataclass(frozen=True, eq=False)
+class ArrangedCycle:
+    """One cycle of an actor. files: the clips it was captured from; empty if it is modelled."""
+
+    speed: float  # m/s
+    step_frequency: float  # steps/min
+    stance: float  # share of the cycle
+    coefficients: Floats  # (S, C)
+    files: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Arrangement:
+    """Rows of cycles, each (step frequency, cycles in order of speed); one path if `follows`."""
+
+    rows: tuple[tuple[float, tuple[ArrangedCycle, ...]], ...]
+    follows: bool
+
+    @property
+    def cycles(self) -> tuple[ArrangedCycle, ...]:
+        """All cycles, row by row."""
+        return tuple(cycle for _, row in self.rows for cycle in row)
+
+
+def arrange(walks: Sequence[CapturedWalk], person: Person, leg_length: float, complete: bool) -> Arrangement:
+    """The cycles of a person. leg_length: m, of the body that will be drawn."""
+    captured = [_captured(walk, person) for walk in walks]
+    if complete:
+        return _completed(captured, walks, person, leg_length)
+    groups = _groups(captured, ROW_GAP)
+    if _is_grid(groups):
+        return Arrangement(tuple((_mean_frequency(group), tuple(_row(group))) for group in groups), False)
+    return Arrangement(((0.0, tuple(_row(captured, own_frequency=True))),), True)
+
+
+def _is_grid(groups: list[list[ArrangedCycle]]) -> bool:
+    """Two rows or more, each at one beat, whose speeds have a stretch in common."""
+    if len(groups) < 2 or any(np.ptp([cycle.step_frequency for cycle in group]) > 2 * SAME_ROW for group in groups):
+        return False
+    low = max(min(cycle.speed for cycle in group) for group in groups)
+    high = min(max(cycle.speed for cycle in group) for group in groups)
+    return high - low > SAME_SPEED
+
+
+def _groups(cycles: Sequence[ArrangedCycle], gap: float) -> list[list[ArrangedCycle]]:
+    """Cycles parted wherever neighbouring step frequencies lie `gap` steps/min apart."""
+    groups: list[list[ArrangedCycle]] = []
+    for cycle in sorted(cycles, key=lambda cycle: cycle.step_frequency):
+        if groups and cycle.step_frequency - groups[-1][-1].step_frequency < gap:
+            groups[-1].append(cycle)
+        else:
+            groups.append([cycle])
+    return groups
+
+
+def _row(cycles: Sequence[ArrangedCycle], own_frequency: bool = False) -> list[ArrangedCycle]:
+    """Cycles in order of speed at their mean step frequency, those of nearly one speed averaged."""
+    merged: list[list[ArrangedCycle]] = []
+    for cycle in sorted(cycles, key=lambda cycle: cycle.speed):
+        if merged and cycle.speed - merged[-1][0].speed < SAME_SPEED:
+            merged[-1].append(cycle)
+        else:
+            merged.append([cycle])
+    frequency = _mean_frequency(cycles)
+    return [_mean(group, None if own_frequency else frequency) for group in merged]
+
+
+def _mean(cycles: list[ArrangedCycle], step_frequency: float | None) -> ArrangedCycle:
+    return ArrangedCycle(
+        speed=float(np.mean([cycle.speed for cycle in cycles])),
+        step_frequency=_mean_frequency(cycles) if step_frequency is None else step_frequency,
+        stance=float(np.mean([cycle.stance for cycle in cycles])),
+        coefficients=np.mean([cycle.coefficients for cycle in cycles], axis=0),
+        files=tuple(file for cycle in cycles for file in cycle.files),
+    )
+
+
+def _mean_frequency(cycles: Sequence[ArrangedCycle]) -> float:
+    return float(np.mean([cycle.step_frequency for cycle in cycles]))
+
+
+def _captured(walk: CapturedWalk, person: Person) -> ArrangedCycle:
+    """The walk as captured, its posture's zero and what it does not hold taken from the gait model."""
+    model = load_gait_model()
+    none = np.zeros_like(walk.coefficients)
+    average, stance = walk_coefficients(
+        model, person, none, walk.leg_length, walk.gait.speed, walk.gait.step_frequency
+    )
+    coefficients = np.where(np.isnan(walk.coefficients), average, walk.coefficients)
+    for name in TRUNK + (() if walk.marker_based else LEGS):
+        index = SIGNALS.index(name)
+        share = 0.0 if name == "hips_x" and walk.marker_based else BELIEVED
+        coefficients[index, 0] = average[index, 0] + share * (coefficients[index, 0] - average[index, 0])
+    own_stance = walk.stance if np.isfinite(walk.stance) else stance
+    return ArrangedCycle(
+        walk.gait.speed, walk.gait.step_frequency, float(np.clip(own_stance, 0.56, 0.70)), coefficients, (walk.file,)
+    )
+
+
+def _completed(
+    captured: list[ArrangedCycle], walks: Sequence[CapturedWalk], person: Person, leg_length: float
+) -> Arrangement:
+    """The metronome's grid with the captured walks in it at their own speed and step frequency."""
+    own = _Manner.of(captured, walks, person)
+    rows: dict[float, list[ArrangedCycle]] = {}
+    for group in _groups(captured, SAME_ROW):
+        rows[_mean_frequency(group)] = _row(group)
+    for beat in METRONOME:
+        inside = beat not in (METRONOME[0], METRONOME[-1])
+        if all(abs(beat - frequency) > (SAME_ROW if inside else 0.2) for frequency in rows):
+            rows[beat] = []
+    arranged = []
+    for frequency in sorted(rows):
+        there = rows[frequency]
+        for speed in CYCLE_SPEEDS:
+            inside = speed not in (CYCLE_SPEEDS[0], CYCLE_SPEEDS[-1])
+            if all(abs(speed - cycle.speed) > (CROWDED if inside else 0.02) for cycle in rows[frequency]):
+                there = [*there, own.cycle(speed, frequency, leg_length)]
+        arranged.append((frequency, tuple(sorted(there, key=lambda cycle: cycle.speed))))
+    return Arrangement(tuple(arranged), False)
+
+
+@dataclass(frozen=True, eq=False)
+class _Manner:
+    """What a person does differently from the gait model at each captured walk: (n, S, C) and (n,) of stance."""
+
+    person: Person
+    places: Floats  # (n, 2) speed, step frequency
+    residuals: Floats
+    stances: Floats
+
+    @classmethod
+    def of(cls, captured: list[ArrangedCycle], walks: Sequence[CapturedWalk], person: Person) -> _Manner:
+        residuals, stances = [], []
+        for cycle, walk in zip(captured, walks, strict=True):
+            none = np.zeros_like(cycle.coefficients)
+            average, stance = walk_coefficients(
+                load_gait_model(), person, none, walk.leg_length, cycle.speed, cycle.step_frequency
+            )
+            residuals.append(cycle.coefficients - average)
+            stances.append(cycle.stance - stance)
+        places = np.array([[cycle.speed, cycle.step_frequency] for cycle in captured])
+        return cls(person, places, np.array(residuals), np.array(stances))
+
+    def cycle(self, speed: float, step_frequency: float, leg_length: float) -> ArrangedCycle:
+        """The modelled cycle of this person at a speed (m/s) and step frequency (steps/min)."""
+        distance = (self.places - (speed, step_frequency)) / (NEAR_SPEED, NEAR_FREQUENCY)
+        near = np.exp(-0.5 * np.sum(distance**2, axis=1))
+        near = near / max(1.0, float(near.sum()))
+        count = PERSON_RATIO * len(near)
+        weights = near + (1.0 - near.sum()) * count / (1.0 + count) / len(near)
+        manner = np.tensordot(weights, self.residuals, axes=1)
+        coefficients, stance = walk_coefficients(
+            load_gait_model(), self.person, manner, leg_length, speed, step_frequency
+        )
+        stance = float(np.clip(stance + weights @ self.stances, 0.56, 0.70))
+        return ArrangedCycle(speed, step_frequency, stance, coefficients)

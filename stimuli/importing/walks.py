@@ -1,0 +1,160 @@
+"""Every clip of a folder as a captured walk: one closed cycle with its gait, or one sentence why it makes none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from stimuli.clip import Clip, world_positions
+from stimuli.cycle import Cycle, extract_cycle, seam_gaps
+from stimuli.events import GaitError, GaitMeasures, foot_paths, measure
+from stimuli.gait import Gait
+from stimuli.importing.errors import ImportingError
+from stimuli.importing.signals import leg_length, walk_signals
+from stimuli.motion_files.axes import sides_swapped
+from stimuli.motion_files.reading import ENDINGS, read_clip
+from stimuli.skeleton import Floats
+
+LONGEST = 120.0
+"""s: a longer recording is no walk down a walkway."""
+
+SPEEDS = (0.3, 2.6)
+"""m/s, from a shuffle to the walk-run transition at its latest (2.1 m/s on average, Hreljac 1995)."""
+
+STRAIGHT = np.radians(15.0)
+"""Largest change of heading over the stride that is looped."""
+
+LEG_SHARE = 0.491
+"""Thigh and shank over stature (0.245 + 0.246, Winter 2009)."""
+
+LEG_TOLERANCE = 0.14
+"""Share by which a leg may differ from LEG_SHARE of the stature: five standard deviations of people's proportions
+(sitting height over stature, Pheasant 1996: 0.52 with SD 0.014), and regression joint centres."""
+
+SAME_PERSON = {"markers": 0.05, "skeleton": 0.012}
+"""Share by which thigh and shank may differ between clips: one skeleton is exported alike, markers are placed anew."""
+
+
+@dataclass(frozen=True, eq=False)
+class CapturedWalk:
+    """One clip's cycle, ready to be arranged.
+
+    coefficients: (S, C) signals of the gait model, nan where the capture holds none
+    bones:        (4,) m, left thigh and shank, right thigh and shank
+    gait:         of the loop; measured: over all steady strides of the clip
+    """
+
+    file: str
+    format: str
+    gait: Gait
+    measured: GaitMeasures
+    stance: float  # share of the cycle, nan where no toe-off was found
+    coefficients: Floats
+    leg_length: float  # m
+    bones: Floats
+    marker_based: bool
+    pose_difference: float  # m, between the joined frames
+    seam: float  # m
+    seam_velocity: float  # share of the fastest joint's speed
+    frames: tuple[int, int]  # the joined frames, from 0
+    warnings: tuple[str, ...]
+
+
+def read_walks(folder: Path) -> list[CapturedWalk]:
+    """The captured walk of every motion file in a folder, in order of name.
+
+    Raises MotionFileError naming the first file that makes no walk, or two files of two people.
+    """
+    if not folder.is_dir():
+        raise ImportingError(f"{folder} is no folder; give the folder that holds the clips and actor.yaml")
+    paths = sorted(path for path in folder.iterdir() if path.suffix.lower() in ENDINGS)
+    if not paths:
+        raise ImportingError(f"{folder} holds no motion file; they end in {', '.join(ENDINGS)}")
+    walks = [read_walk(path) for path in paths]
+    _check_one_person(walks, folder)
+    return walks
+
+
+def read_walk(path: Path) -> CapturedWalk:
+    """The captured walk of one motion file. Raises MotionFileError."""
+    clip = read_clip(path)
+    _check_clip(clip, path)
+    try:
+        measured = measure(clip)
+        cycle = extract_cycle(clip)
+    except GaitError as error:
+        raise ImportingError(f"{path}: {str(error).removeprefix(clip.name + ': ')}") from error
+    _check_walk(clip, cycle, path)
+    seam, seam_velocity = seam_gaps(cycle)
+    stance = [share for share in cycle.stance_share if np.isfinite(share)]
+    parts = ("leftLowerLeg", "leftFoot", "rightLowerLeg", "rightFoot")
+    return CapturedWalk(
+        file=path.name,
+        format=clip.source.format,
+        gait=cycle.gait,
+        measured=measured,
+        stance=float(np.mean(stance)) if stance else float("nan"),
+        coefficients=walk_signals(cycle),
+        leg_length=leg_length(cycle),
+        bones=np.array([float(np.linalg.norm(cycle.offsets[cycle.joints.index(part)])) for part in parts]),
+        marker_based=clip.source.names == "markers",
+        pose_difference=cycle.provenance.pose_difference,
+        seam=seam,
+        seam_velocity=seam_velocity,
+        frames=(cycle.provenance.first_frame, cycle.provenance.last_frame),
+        warnings=clip.warnings,
+    )
+
+
+def check_height(walks: list[CapturedWalk], height: float, folder: Path) -> None:
+    """Raises ImportingError if the captured legs do not belong to a person of this height (m)."""
+    leg = float(np.median([walk.leg_length for walk in walks]))
+    if abs(leg / (LEG_SHARE * height) - 1.0) > LEG_TOLERANCE:
+        raise ImportingError(
+            f"{folder}: thigh and shank are {leg:.2f} m long, which is no leg of somebody {height:g} m tall "
+            f"(about {LEG_SHARE * height:.2f} m); check height in actor.yaml and the unit of {walks[0].file}"
+        )
+
+
+def _check_clip(clip: Clip, path: Path) -> None:
+    if clip.frame_count < 2:
+        raise ImportingError(f"{path}: holds one frame and so no walk; take it out of the folder")
+    if clip.duration > LONGEST:
+        raise ImportingError(
+            f"{path}: lasts {clip.duration:.0f} s; cut it to one straight walk of at most {LONGEST:.0f} s"
+        )
+    missing = [role for side in ("left", "right") for role in (f"{side}LowerLeg",) if role not in clip.roles]
+    if missing:
+        raise ImportingError(f"{path}: no joint plays {', '.join(missing)}; name it in a YAML file beside the motion")
+
+
+def _check_walk(clip: Clip, cycle: Cycle, path: Path) -> None:
+    speed = cycle.gait.speed
+    if not SPEEDS[0] <= speed <= SPEEDS[1]:
+        raise ImportingError(
+            f"{path}: goes at {speed:.2f} m/s, which is no walk ({SPEEDS[0]:g} to {SPEEDS[1]:g} m/s); check unit_to_m"
+        )
+    heading = foot_paths(clip).heading
+    source = cycle.provenance
+    start, end = heading[source.first_frame], heading[source.last_frame]
+    turn = float(abs(np.arctan2(start[0] * end[1] - start[1] * end[0], start @ end)))
+    if turn > STRAIGHT:
+        raise ImportingError(
+            f"{path}: turns by {np.degrees(turn):.0f} degrees within a stride; cut it to a straight walk"
+        )
+    if sides_swapped(world_positions(clip), clip.roles):
+        raise ImportingError(f"{path}: left and right are swapped or the file is mirrored; export it anew")
+
+
+def _check_one_person(walks: list[CapturedWalk], folder: Path) -> None:
+    """Raises ImportingError naming two clips whose legs are not of one person."""
+    for walk in walks[1:]:
+        kind = "markers" if walk.marker_based or walks[0].marker_based else "skeleton"
+        ratios = walk.bones / walks[0].bones
+        if float(np.max(np.abs(ratios - 1.0))) > SAME_PERSON[kind]:
+            raise ImportingError(
+                f"{folder}: {walks[0].file} and {walk.file} are of two people: thigh and shank measure "
+                f"{walks[0].leg_length:.3f} m and {walk.leg_length:.3f} m; keep one person's clips in a folder"
+            )

@@ -1,0 +1,131 @@
+"""`python -m tests.benchmarks` prints how long the things people feel take on this machine, beside their limits.
+
+A figure is the fastest of several rounds, in CPU or wall time as said; the limit is the project's own.
+"""
+
+from __future__ import annotations
+
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from itertools import product
+from pathlib import Path
+
+
+def fastest(function: Callable[[], object], rounds: int, repeats: int = 1) -> float:
+    """s of CPU time of this thread for one call, the fastest of several rounds."""
+    best = float("inf")
+    for _ in range(rounds):
+        begun = time.thread_time()
+        for _ in range(repeats):
+            function()
+        best = min(best, (time.thread_time() - begun) / repeats)
+    return best
+
+
+def machine() -> str:
+    """The processor's name and the number of its cores, as the system tells."""
+    import os
+
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        name = next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        name = platform.processor() or platform.machine()
+    return f"{name}, {os.cpu_count()} cores, {platform.system()}, Python {platform.python_version()}"
+
+
+def row(what: str, seconds: float, limit: float) -> None:
+    """One line: the figure, its limit, and whether it was kept."""
+    unit, factor = ("ms", 1e3) if limit < 1.0 else ("s", 1.0)
+    verdict = "kept" if seconds <= limit else "MISSED"
+    print(f"{what:<64}{seconds * factor:9.3f} {unit:<3} limit {limit * factor:g} {unit}: {verdict}", flush=True)
+
+
+def analysis_of_the_thesis() -> None:
+    """The 4 x 3 x 2 x sex ANOVA of 22 x 96 rows (afex in R: 40 ms)."""
+    import numpy as np
+    import pandas as pd
+
+    from analysis import anova
+    from analysis.studentized_range import survival
+
+    cells = product(range(22), ("F1", "F2", "M1", "M2"), (0.8, 1.0, 1.2), (80, 120), range(4))
+    data = pd.DataFrame(cells, columns=["participant", "actor", "speed", "start", "repetition"])
+    data["sex"] = np.where(data["participant"] < 10, "f", "m")
+    data["walk_ratio"] = np.random.default_rng(1).normal(0.006, 0.0005, len(data))
+    within = ("actor", "speed", "start")
+    row("ANOVA of 22 x 96 rows", fastest(lambda: anova(data, "walk_ratio", "participant", within, "sex"), 15), 0.015)
+    q, df = np.linspace(0.1, 9, 918), np.linspace(20, 200, 918)
+    row("918 Tukey p values", fastest(lambda: survival(q, 24, df), 3), 1.0)
+
+
+def walker() -> None:
+    """One pose of the two-level tree of 25 cycles, forward kinematics and foot contact."""
+    from stimuli.actors import load_actor
+    from stimuli.walker import drawn_pose, skin_matrices
+
+    actor = load_actor("F1")
+
+    def pose() -> None:
+        skin_matrices(actor, drawn_pose(actor, 1.0, 87.0, 0.3))
+
+    row("a walker's pose and joint matrices", fastest(pose, 7, 200), 4e-4)
+
+
+def frame() -> None:
+    """Our own work in a frame of an adjustment trial; 16 x 9 pixels, so that the driver has next to nothing to do."""
+    from experiment_app.render.renderer import Renderer
+    from experiment_app.scene import Scene, Walker
+    from experiment_app.walkers import drawn_walkers
+    from experiment_app.windows.offscreen import offscreen_context
+
+    context = offscreen_context()
+    target = context.simple_framebuffer((16, 9))
+    renderer = Renderer(context, (16, 9), 1.0, 1)
+    phases = iter(range(10**9))
+
+    def draw() -> None:
+        scene = Scene((Walker("F1", 1.0, 87.0, next(phases) / 997.0 % 1.0),))
+        renderer.draw(scene, drawn_walkers(scene), target)
+
+    draw()
+    row(f"CPU of our thread per frame, one walker ({context.info['GL_RENDERER'][:20]})", fastest(draw, 7, 60), 1e-3)
+
+
+def simulation() -> None:
+    """22 participants of 96 trials through the real loop and journal."""
+    from experiment_app.simulate import simulate
+    from protocols.study_file import read_study
+
+    with tempfile.TemporaryDirectory() as folder:
+        begun = time.perf_counter()
+        for _ in simulate(read_study("walk_ratio"), 22, Path(folder)):
+            pass
+        row("22 simulated participants, 2112 trials with fsync (wall)", time.perf_counter() - begun, 10.0)
+
+
+def help_text() -> None:
+    """The command's start-up, as a whole process."""
+
+    def start() -> float:
+        begun = time.perf_counter()
+        subprocess.run([sys.executable, "-m", "experiment_app", "--help"], check=True, stdout=subprocess.DEVNULL)
+        return time.perf_counter() - begun
+
+    start()
+    row("gaitlab --help (wall, whole process)", min(start() for _ in range(5)), 0.4)
+
+
+def main() -> None:
+    """Prints the machine and every figure."""
+    print(machine())
+    for benchmark in (help_text, walker, frame, simulation, analysis_of_the_thesis):
+        benchmark()
+
+
+if __name__ == "__main__":
+    main()
