@@ -8,10 +8,14 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from protocols.consistency import inconsistencies
-from protocols.design import conditions, make_trials
-from protocols.study import Study
+from protocols.consistency import inconsistencies, referred_factors
+from protocols.design import conditions, make_trials, practice_trials
+from protocols.plan import value_of
+from protocols.study import Study, Words
 from protocols.study_file import Mistake, Place, StudyFile, read_study
+
+SMALLEST_TEXT = 20
+"""Pixels of a 1080p screen below which a page is too long: on 24 inches this is 5.5 mm with its leading."""
 
 READING_SPEED = 200.0
 """Words read per minute on a screen, a cautious figure for the expected duration."""
@@ -24,6 +28,7 @@ def checked_study(study: str) -> StudyFile:
     """The study of a file or shipped name; raises StudyFileError with every mistake at once, also in names."""
     file = read_study(study)
     refuse_mistakes(file, [*inconsistencies(file.study), *check_names(file)])
+    refuse_mistakes(file, list(_coverage(file.study)))
     return file
 
 
@@ -34,7 +39,7 @@ def refuse_mistakes(file: StudyFile, mistakes: Sequence[Mistake]) -> None:
 
 
 def check_names(file: StudyFile) -> list[Mistake]:
-    """Actors and bodies that do not exist, and speeds and step frequencies that an actor's captures do not cover."""
+    """Actors and bodies that do not exist."""
     from stimuli.actors import actor_names
     from stimuli.bodies import body_names
 
@@ -42,7 +47,7 @@ def check_names(file: StudyFile) -> list[Mistake]:
     mistakes = [*_names(study, study.stimulus.actor, ("stimulus", "actor"), "actor", actor_names())]
     if study.stimulus.body:
         mistakes += _names(study, study.stimulus.body, ("stimulus", "body"), "body", body_names())
-    return mistakes or list(_coverage(study))
+    return mistakes
 
 
 def _names(study: Study, value: str, place: Place, what: str, known: Sequence[str]) -> Iterator[Mistake]:
@@ -60,7 +65,8 @@ def _names(study: Study, value: str, place: Place, what: str, known: Sequence[st
         ]
     for name, where in named:
         if name not in known:
-            near = get_close_matches(str(name), known, n=1, cutoff=0.5)
+            same = [k for k in known if k.lower() == str(name).lower()]
+            near = same or get_close_matches(str(name), known, n=1, cutoff=0.5)
             way = f"did you mean {near[0]}?" if near else f"there are: {', '.join(known)}"
             yield Mistake(where, f"there is no {what} {name}; {way}")
 
@@ -74,15 +80,23 @@ def _coverage(study: Study) -> Iterator[Mistake]:
     factor = speed[1:] if isinstance(speed, str) else None
     speeds = list(enumerate(study.factors[factor])) if factor else [(0, speed)]
     actors = study.factors[actor[1:]] if actor.startswith("$") else [actor]
-    reach = study.task.range
-    for i, value in speeds:
-        for name in actors:
-            try:
-                for frequency in (reach.minimum, reach.maximum):
-                    drawn_pose(load_actor(str(name)), float(value), frequency, 0.0)
-            except ValueError as error:
-                yield Mistake(("factors", factor, i) if factor else ("stimulus", "speed"), str(error))
-                break
+    asked: list[tuple[Place, float, str]] = [
+        (("factors", factor, i) if factor else ("stimulus", "speed"), float(value), str(name))
+        for i, value in speeds
+        for name in actors
+    ]
+    for trial in practice_trials(study):
+        place: Place = ("practice", trial.number - 1, factor) if factor else ("practice", trial.number - 1)
+        asked.append((place, float(value_of(speed, trial)), str(value_of(actor, trial))))
+    found: set[Place] = set()
+    for place, value, name in asked:
+        try:
+            for frequency in (study.task.range.minimum, study.task.range.maximum):
+                drawn_pose(load_actor(name), value, frequency, 0.0)
+        except ValueError as error:
+            if place not in found:
+                yield Mistake(place, str(error))
+            found.add(place)
 
 
 def expected_minutes(study: Study) -> float:
@@ -104,8 +118,8 @@ def summary(file: StudyFile) -> list[str]:
     lines = [
         f"{file.name}: {study.title}",
         f"  no mistakes; SHA-256 {file.hash[:16]}",
-        f"  {levels} levels = {cells} conditions, {study.repetitions} times each = {trials} trials, "
-        f"after {len(study.practice)} training trials",
+        f"  {levels} levels = {cells} conditions, {_times(study.repetitions)} each = {trials} trials in {study.order} "
+        f"order, after {len(study.practice)} training trials",
         f"  about {math.ceil(expected_minutes(study))} minutes; {study.participants.planned} participants planned",
         "",
         "Balance (one dot = one trial of participant 1, left to right in the order shown)",
@@ -118,7 +132,9 @@ def text_notes(study: Study) -> list[str]:
     from experiment_app.render.fonts import can_shape, missing_glyphs, needs_shaping
 
     texts = "".join(sorted(set("".join(_texts(study.model_dump())))))
-    notes = []
+    notes = [*_unused_factors(study), *_wrong_arrows(study), *_small_pages(study)]
+    if not study.language.startswith("en") and study.words == Words():
+        notes.append(f"language is {study.language}, but the buttons and hints are English; translate them in words.")
     missing = sorted(missing_glyphs(texts))
     if missing:
         signs = " ".join(missing[:20])
@@ -126,6 +142,41 @@ def text_notes(study: Study) -> list[str]:
     if needs_shaping(texts) and not can_shape():
         notes.append("a script in the texts needs FriBiDi to be shown right; install it (on Debian, libfribidi0).")
     return notes
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
+
+
+def _unused_factors(study: Study) -> Iterator[str]:
+    for factor in study.factors:
+        if factor not in referred_factors(study):
+            yield f"factor {factor} changes nothing that is shown; refer to it as ${factor} in stimulus or task."
+
+
+def _wrong_arrows(study: Study) -> Iterator[str]:
+    keys = study.task.keys
+    told = " ".join(page.text for page in [*study.pages.instructions, study.pages.before_practice] if page)
+    for sign, key in (("←", "left"), ("→", "right")):
+        if sign in told and key not in (keys.lower, keys.raise_):
+            yield f"the instructions name {sign}, which is no key of the task; write {{lower}} and {{raise}} instead."
+
+
+def _small_pages(study: Study) -> Iterator[str]:
+    """Pages so long that their text would be hard to read on a 1080p screen."""
+    from experiment_app.render.layout import layout_page
+    from experiment_app.scene import Line, Page
+    from experiment_app.staging import paragraphs
+
+    pages = study.pages
+    for page in [pages.consent, *pages.instructions, pages.before_practice, pages.before_trials, pages.debrief]:
+        if page is None:
+            continue
+        lines = (Line(page.title, "title"), *paragraphs(page.text))
+        placed = layout_page(Page(lines, hint=study.words.page_hint), 1920, 1080, 1.0)
+        smallest = min(text.size for text in placed.texts if text.role == "text")
+        if smallest < SMALLEST_TEXT:
+            yield f"the page {page.title!r} is so long that its text gets very small; part it into two pages."
 
 
 def _texts(part: object) -> Iterator[str]:

@@ -13,14 +13,18 @@ from cyclopts import App, Parameter
 from rich.console import Console
 
 from experiment_app.errors import RunError, UsageError
+from experiment_app.motion_commands import actor_commands, clip
 
 app = App(
     name="gaitlab",
     help="Perceptual experiments on walking virtual humans: from a study file to a report.",
+    version=lambda: _version(),
     version_flags=["--version"],
 )
 out = Console(highlight=False, soft_wrap=True)
 problems = Console(stderr=True, highlight=False, soft_wrap=True)
+app.command(clip)
+app.command(actor_commands)
 
 Data = Annotated[Path, Parameter(help="Folder of all data; each study has its own folder in it.")]
 StudyArgument = Annotated[str, Parameter(help="A study file (YAML), or the name of a shipped study: walk_ratio.")]
@@ -136,6 +140,8 @@ def simulate(
     count = file.study.participants.planned if participants is None else participants
     if count < 1:
         raise UsageError(f"--participants {count}: at least 1 is needed.")
+    if data == Path("data"):
+        raise UsageError("--data data: that is where real participants go; choose another folder, as simulated.")
     for _ in _with_progress(simulated_runs(file, count, data, seed), count, "Simulating participants"):
         pass
     out.print(f"{count} simulated participants in {data / file.study.study}", markup=False)
@@ -166,6 +172,68 @@ def analyse(
 
 
 @app.command
+def power(
+    study: StudyArgument,
+    *,
+    participants: Annotated[
+        list[int] | None, Parameter(consume_multiple=True, help="Numbers of participants; by default the planned one.")
+    ] = None,
+    experiments: Annotated[int, Parameter(help="How many experiments to simulate.")] = 10_000,
+    seed: Annotated[int, Parameter(help="The same seed gives the same table, however the work is split.")] = 1,
+    shard: Annotated[str, Parameter(help="Do the i-th of n parts only, as 1/8, for many machines.")] = "1/1",
+    part: Annotated[Path | None, Parameter(name="--out", help="Write this part's counts (JSON) for --combine.")] = None,
+    combine: Annotated[
+        list[Path] | None, Parameter(consume_multiple=True, help="Join parts written with --out; nothing is simulated.")
+    ] = None,
+    plot: Annotated[Path | None, Parameter(help="Also draw power against participants (PNG).")] = None,
+    workers: Annotated[int, Parameter(help="Processes; 0 for as many as there are cores.")] = 0,
+    dask: Annotated[str, Parameter(help="Address of a dask scheduler that spreads the work over a cluster.")] = "",
+) -> int:
+    """How often each planned test would be significant, for the study's simulated observers.
+
+    Every experiment goes through the study's own design and planned analysis.
+    """
+    import os
+
+    from analysis.power_study import (
+        dask_client,
+        join_parts,
+        power_figure,
+        power_notes,
+        read_part,
+        simulate_power,
+        write_part,
+    )
+    from experiment_app.check import checked_study
+
+    file = checked_study(study)
+    notes = power_notes(file.text)
+    if combine:
+        result, missing = join_parts([read_part(path) for path in combine])
+        notes += missing
+    else:
+        first, slash, last = shard.partition("/")
+        if not (slash and first.isdecimal() and last.isdecimal() and 1 <= int(first) <= int(last)):
+            raise UsageError(f"--shard {shard}: write i/n with i from 1 to n, as 1/8.")
+        result = simulate_power(
+            file.text, participants or (), experiments=experiments, seed=seed, shard=(int(first), int(last)),
+            workers=workers or os.cpu_count() or 1, client=dask_client(dask) if dask else None,
+            progress=lambda parts, count: _with_progress(parts, count, "Simulating experiments"),
+        )  # fmt: skip
+    for row in result.table.to_dict("records"):
+        name = f"t test of {row['name']}" if row["test"] == "t" else row["name"].replace(":", " x ")
+        limits = f"[{row['ci_low']:.3f}, {row['ci_high']:.3f}]"
+        out.print(f"{row['participants']:>5} participants  {name:<28} {row['power']:.3f}  {limits}", markup=False)
+    out.print(f"Power with 95 % limits from {result.table['experiments'].iloc[0]} experiments.", markup=False)
+    for note in notes:
+        problems.print(f"Note: {note}", style="yellow", markup=False)
+    for path in (part and write_part(part, result), plot and power_figure(plot, result)):
+        if path:
+            out.print(f"  {path}", markup=False)
+    return 0
+
+
+@app.command
 def demo(
     *,
     folder: Annotated[Path, Parameter(help="Where the demo writes its data, pictures and report.")] = Path(
@@ -175,7 +243,7 @@ def demo(
         bool, Parameter(negative="", help="Do not open a window even where there is a screen.")
     ] = False,
 ) -> int:
-    """See it work in a minute: a short session, twenty-one simulated participants, the analysis.
+    """See it work in a minute: a short session, simulated participants, the analysis and its report.
 
     With a screen you take part yourself; without one a simulated participant does, off-screen.
     """
@@ -212,6 +280,8 @@ def copy(
             file.write(text)
     except FileExistsError:
         raise UsageError(f"{path} exists already; choose another name.") from None
+    except OSError as error:
+        raise UsageError(f"{path} cannot be made ({error.strerror}); is its folder there?") from None
     beside = path.parent / "study.schema.json"
     if not beside.exists():
         beside.write_text(schema_text(), encoding="utf-8")
@@ -227,6 +297,12 @@ def _size(text: str) -> tuple[int, int]:
     return int(width), int(height)
 
 
+def _version() -> str:
+    from importlib.metadata import version
+
+    return version("gaitlab")
+
+
 def _say(sentence: str) -> None:
     out.print(sentence, markup=False)
 
@@ -235,7 +311,10 @@ def _ask(question: str) -> bool:
     """Asks on the terminal; raises UsageError where nobody can answer."""
     if not sys.stdin.isatty():
         raise UsageError(f"{question} Nobody can answer here: say --resume yes or --resume no.")
-    return input(f"{question} [Y/n] ").strip().lower() in ("", "y", "yes")
+    try:
+        return input(f"{question} [Y/n] ").strip().lower() in ("", "y", "yes")
+    except EOFError:
+        return False
 
 
 def _with_progress(items, count: int, what: str):  # type: ignore[no-untyped-def]

@@ -32,10 +32,22 @@ SIZE = (640, 360)
 FRAME_RATE = 6.0
 """Hz of the whole off-screen session: enough to exercise every page and trial within the minute."""
 
-FILM_SIZE = (960, 540)
+FILM_SIZE = (800, 450)
 FILM_RATE = 25.0
 PARTICIPANTS = 22
 SEED = 2022
+
+SHORT_PAGES: dict[str, Any] = {
+    "instructions": [
+        {
+            "title": "Your task",
+            "text": "Hold {lower} for fewer, longer steps and {raise} for more, shorter steps. When the walk looks "
+            "most natural to you, press {confirm}.\n\nPress Escape to pause or to stop.",
+        }
+    ],
+    "before_practice": {"title": "One trial to practise", "text": "Then eight trials follow."},
+}
+"""What the short version says instead, so that it is true of it."""
 
 Progress = Callable[[Iterator[Any], int, str], Iterator[Any]]
 
@@ -46,14 +58,12 @@ def run_demo(folder: Path, *, off_screen: bool, say: Callable[[str], None], prog
 
     folder = _fresh(folder)
     study = short_study()
-    if not off_screen and has_screen():
-        say("Your turn: a short version of the study opens now. Press Escape to pause or to stop.")
-        _take_part(folder, say)
-    else:
+    if off_screen or not has_screen() or not _take_part(folder, say):
         say("A simulated participant takes the study off-screen; every page and trial is drawn.")
         pictures = _watch_simulated(study, folder)
         say(f"  pages and a trial: {', '.join(p.name for p in pictures)} in {folder / 'pictures'}")
-        say(f"  film of a trial:   {film_trial(study, folder / 'pictures')}")
+    film_trial(study, folder / "pictures")
+    say(f"Film of a trial: {folder / 'pictures' / 'trial.webp'}, and its frames: trial-strip.png beside it")
     runs = simulate(study, PARTICIPANTS, folder / "data", SEED)
     for _ in progress(runs, PARTICIPANTS, "Simulating participants"):
         pass
@@ -70,14 +80,18 @@ def run_demo(folder: Path, *, off_screen: bool, say: Callable[[str], None], prog
 
 
 def short_study() -> StudyFile:
-    """The walk ratio study with one female and one male actor and one repetition: 2 x 3 x 2 = 12 trials."""
+    """The walk ratio study with two actors, two speeds and one repetition: 2 x 2 x 2 = 8 trials."""
     from ruamel.yaml import YAML
 
     yaml = YAML(typ="rt")
     document = yaml.load(read_study("walk_ratio").text)
     document["study"] = "walk_ratio_demo"
     document["factors"]["actor"] = ["F1", "M1"]
+    document["factors"]["speed"] = [0.8, 1.2]
     document["repetitions"] = 1
+    document["practice"] = document["practice"][:1]
+    for page in ("before_practice", "instructions"):
+        document["pages"][page] = SHORT_PAGES[page]
     del document["breaks"]
     for test in document["analysis"]["t_tests"]:
         test["against"] = {actor: test["against"][actor] for actor in ("F1", "M1")}
@@ -106,10 +120,11 @@ def _fresh(folder: Path) -> Path:
     return chosen
 
 
-def _take_part(folder: Path, say: Callable[[str], None]) -> None:
-    """The short study for the person at the screen; stopping early is fine in a demo."""
+def _take_part(folder: Path, say: Callable[[str], None]) -> bool:
+    """The short study for the person at the screen; False when no window could be opened after all."""
     from experiment_app.errors import RunError
 
+    say("Your turn: a short version of the study opens now. Press Escape to pause or to stop.")
     file = folder / "walk_ratio_demo.yaml"
     file.write_text(short_study().text, encoding="utf-8")
     try:
@@ -120,6 +135,10 @@ def _take_part(folder: Path, say: Callable[[str], None]) -> None:
         )  # fmt: skip
     except RunError as error:
         say(str(error))
+    except UsageError as error:
+        say(f"No window could be opened: {error}")
+        return False
+    return True
 
 
 def _watch_simulated(study: StudyFile, folder: Path) -> list[Path]:
@@ -166,8 +185,8 @@ class _Forgetful:
         """Drops the records."""
 
 
-def film_trial(study: StudyFile, folder: Path) -> Path:
-    """A film and a strip of one simulated trial at 25 frames/s, drawn off-screen; returns the film's path."""
+def film_trial(study: StudyFile, folder: Path) -> None:
+    """A film and a strip of the first seconds of a simulated trial at 25 frames/s, drawn off-screen."""
     from protocols.plan import make_plan
 
     plan = make_plan(study.study, SEED, 1)
@@ -184,4 +203,3 @@ def film_trial(study: StudyFile, folder: Path) -> Path:
         run_session(begin(plan), window, _Forgetful())
     save_strip(frames[: int(2 * FILM_RATE)], folder / "trial-strip.png")
     save_film(frames, FILM_RATE, folder / "trial.webp")
-    return folder / "trial.webp"

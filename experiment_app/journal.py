@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from queue import SimpleQueue
 from typing import IO
@@ -30,7 +31,7 @@ class Journal:
         self._queue: SimpleQueue[Record | None] = SimpleQueue()
         self._queued = 0
         self._saved = 0
-        self._failure: OSError | None = None
+        self._failure: Exception | None = None
         self._idle = threading.Condition()
         self._thread = threading.Thread(target=self._write_all, name="journal", daemon=True)
         self._thread.start()
@@ -74,24 +75,43 @@ class Journal:
     def _check(self) -> None:
         if self._failure is not None:
             raise RunError(
-                f"{self.path} can no longer be written ({self._failure.strerror}); everything up to the last "
+                f"{self.path} can no longer be written ({_reason(self._failure)}); everything up to the last "
                 "finished trial is safe. Make room or repair the disk, then give the same command again to go on.",
-                reason=str(self._failure.strerror),
+                reason=_reason(self._failure),
             )
 
     def _write_all(self) -> None:
         while (record := self._queue.get()) is not None:
             if self._failure is None:
                 try:
-                    self._file.write(encode_line(record).encode("utf-8") + b"\n")
-                    self._file.flush()
+                    append_line(self._file, encode_line(record))
                     if isinstance(record, DURABLE):
                         os.fsync(self._file.fileno())
-                except OSError as error:
+                except Exception as error:  # whatever it is, the loop must learn of it and not wait for ever
                     self._failure = error
             with self._idle:
                 self._saved += self._failure is None
                 self._idle.notify_all()
+
+
+def append_line(file: IO[bytes], line: str) -> None:
+    """Adds a whole line to an unbuffered file; when that cannot be done, none of it, and OSError is raised.
+
+    A nearly full disk takes part of a write without an error, so the rest is written until it is taken or refused.
+    """
+    end = file.tell()
+    rest = memoryview(line.encode("utf-8") + b"\n")
+    try:
+        while rest:
+            rest = rest[file.write(rest) or 0 :]
+    except OSError:
+        file.truncate(end)
+        file.seek(end)
+        raise
+
+
+def _reason(failure: Exception) -> str:
+    return str(getattr(failure, "strerror", None) or failure)
 
 
 def create_journal(run: Run, header: Header) -> Journal:
@@ -123,37 +143,61 @@ def _set_aside_unbegun(run: Run) -> None:
     """Renames a journal without even a whole header, left by a kill in its first moment, so a run can begin."""
     if not run.journal.exists() or journal_lines(run.journal)[0]:
         return
-    with open(run.journal, "rb") as file:
+    with open(run.journal, "r+b") as file:
         lock(file, run.journal)
+        if journal_lines(run.journal)[0]:
+            raise UsageError(f"{run.journal} was begun by another gaitlab just now; use another participant ID.")
         os.rename(run.journal, _torn_name(run.folder))
 
 
 def _torn_name(folder: Path) -> Path:
-    return folder / f"journal.torn-{len(list(folder.glob('journal.torn-*'))) + 1}"
+    taken = [int(p.name[13:]) for p in folder.glob("journal.torn-*") if p.name[13:].isdigit()]
+    return folder / f"journal.torn-{max(taken, default=0) + 1}"
 
 
-def reopen_journal(run: Run) -> tuple[Journal, int]:
-    """The journal of an unfinished run, ready to append, and the bytes of a torn last line set aside.
+def reopen_journal(run: Run) -> tuple[Journal, Run, int]:
+    """An unfinished run's journal ready to append, the run as it is now, and the bytes of a torn line set aside.
 
-    The torn bytes are copied to `journal.torn-<n>` before they are cut off, so nothing is lost.
+    The journal is read again once it is locked: another gaitlab may have gone on with the run meanwhile. Torn
+    bytes are copied to `journal.torn-<n>` before they are cut off, so nothing is lost. Raises UsageError.
     """
     try:
         file = open(run.journal, "r+b", buffering=0)  # noqa: SIM115 - the Journal closes it
     except OSError as error:
         raise UsageError(f"{run.journal} cannot be written ({error.strerror}); make it writable.") from None
-    lock(file, run.journal)
-    _, torn = journal_lines(run.journal)
+    try:
+        lock(file, run.journal)
+        lines, torn = journal_lines(run.journal)
+        run = replace(run, lines=lines)
+        if run.end:
+            raise UsageError(f"the run in {run.folder} has {run.end} meanwhile; there is nothing to go on with.")
+        _set_torn_aside(file, run, torn)
+    except UsageError:
+        file.close()
+        raise
+    except OSError as error:
+        file.close()
+        raise UsageError(
+            f"{run.folder} cannot be written ({error.strerror}); nothing was changed. Make room, then try again."
+        ) from None
+    return Journal(file, run.journal), run, torn
+
+
+def _set_torn_aside(file: IO[bytes], run: Run, torn: int) -> None:
+    size = os.fstat(file.fileno()).st_size
     if torn:
-        size = os.fstat(file.fileno()).st_size
         file.seek(size - torn)
-        rest = file.read()
-        with open(_torn_name(run.folder), "xb") as copy:
-            copy.write(rest)
-            copy.flush()
-            os.fsync(copy.fileno())
+        name = _torn_name(run.folder)
+        try:
+            with open(name, "xb") as copy:
+                copy.write(file.read())
+                copy.flush()
+                os.fsync(copy.fileno())
+        except OSError:
+            name.unlink(missing_ok=True)
+            raise
         file.truncate(size - torn)
     file.seek(0, os.SEEK_END)
-    return Journal(file, run.journal), torn
 
 
 def _sync_folder(folder: Path) -> None:

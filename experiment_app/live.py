@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Literal
 
 from experiment_app.check import check_names, checked_study, refuse_mistakes
-from experiment_app.errors import RunError
+from experiment_app.errors import RunError, UsageError
 from experiment_app.loop import run_session
 from experiment_app.opening import OpenRun, open_new, open_unfinished, unfinished_run
-from experiment_app.run_folder import Run, check_participant
+from experiment_app.run_folder import Run, check_participant, first_headers
 from experiment_app.simulate import refuse_mixed
 from experiment_app.walkers import cast
 from experiment_app.windows.desktop import DesktopWindow
@@ -43,7 +43,12 @@ def run_live(
     check_participant(participant)
     file = checked_study(study)
     refuse_mixed(data, file.study.study, simulated=False)
+    others = [h["participant"] for h in first_headers(data, file.study.study) if h["study_hash"] != file.hash]
+    if others:
+        say(f"Note: {', '.join(others[:5])} took part with another version of this study file.")
     old = None if new_run else unfinished_run(data, file.study.study, participant)
+    if old is not None and seed is not None:
+        raise UsageError(f"--seed: participant {participant} has an unfinished run, which keeps its own order.")
     if old is not None and not _continues(old, file, resume, ask, say):
         return 2
     with DesktopWindow(
@@ -64,7 +69,7 @@ def run_live(
         with opened.journal as journal, ending_signals(window.request_end):
             prepare(opened.plan)
             session = run_session(begin(opened.plan), window, journal)
-    return _farewell(opened, session.ended, say)
+    return _farewell(opened, f"gaitlab run {study} --participant {participant} --data {data}", session.ended, say)
 
 
 def _continues(old: Run, file: StudyFile, resume: str, ask: Callable[[str], bool], say: Callable[[str], None]) -> bool:
@@ -109,7 +114,7 @@ def ending_signals(request_end: Callable[[str], None]) -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def _farewell(opened: OpenRun, ended: str, say: Callable[[str], None]) -> int:
+def _farewell(opened: OpenRun, again: str, ended: str, say: Callable[[str], None]) -> int:
     run = opened.run
     if ended == "finished":
         say(f"Participant {run.participant} has finished: {run.journal}")
@@ -117,8 +122,8 @@ def _farewell(opened: OpenRun, ended: str, say: Callable[[str], None]) -> int:
     if ended == "declined":
         say(f"Participant {run.participant} declined; only the refusal is stored.")
         return 0
-    again = f"gaitlab run ... --participant {run.participant}"
-    message = f"the run ended early ({ended}); everything recorded is in {run.journal}. To go on: {again}"
+    why = f"the computer asked it to end, {ended}" if ended.startswith("SIG") else ended
+    message = f"the run ended early ({why}); everything recorded is in {run.journal}. To go on: {again}"
     if ended == "stopped":
         say(message[0].upper() + message[1:])
         return 1

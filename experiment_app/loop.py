@@ -46,7 +46,7 @@ def run_session(session: Session, window: Window, journal: Recorder) -> Session:
         if session.done:
             break
         showing = session.trial is not None and session.overlay is None
-        scene = stage(advance(session, window.next_display_time()))
+        scene = stage(_previewed(session, window.next_display_time()))
         flip = window.show(scene)
         if session.shown is None:
             frames = Frames()
@@ -55,6 +55,11 @@ def run_session(session: Session, window: Window, journal: Recorder) -> Session:
     session, records = drained(session)
     journal.write(list(records))
     return session
+
+
+def _previewed(session: Session, seen: float) -> Session:
+    """The session as it will be when the frame is seen; a preview never ends an interval, only time does."""
+    return advance(session, seen) if session.trial is not None else session
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,9 @@ from typing import Any
 
 from experiment_app.errors import UsageError
 from experiment_app.journal import Journal, create_journal, reopen_journal
-from experiment_app.run_folder import Run, new_run, participant_number, participant_runs, progress
+from experiment_app.run_folder import Run, new_run, participant_number, participant_runs, progress, run_numbers
 from protocols.design import default_seed
-from protocols.plan import Plan, make_plan
+from protocols.plan import Plan, keys_of, make_plan
 from protocols.record import Continued, Header
 from protocols.session import remaining
 from protocols.study_file import StudyFile, parse_study
@@ -52,14 +52,14 @@ def open_new(
 ) -> OpenRun:
     """A new run; raises UsageError when the participant has finished one and `again` is not set."""
     name = study.study.study
-    runs = participant_runs(data, name, participant)
-    if runs and not again:
+    runs = [] if again else participant_runs(data, name, participant)
+    if runs:
         how = {"": "has an unfinished run", "finished": "has already finished", "declined": "has declined"}
         raise UsageError(
             f"participant {participant} {how.get(runs[-1].end, 'has a run')} ({runs[-1].folder}); "
             "use another ID, or --new-run to record another run beside it."
         )
-    number = runs[-1].number + 1 if runs else 1
+    number = max(run_numbers(data, name, participant), default=0) + 1 if again else 1
     order = participant_number(data, name, participant)
     run = new_run(data, name, participant, number)
     if seed is None:
@@ -73,6 +73,7 @@ def open_new(
         run=number,
         seed=seed,
         simulated=simulated,
+        keys=keys_of(study.study, order),
         versions=_versions(),
         display=display,
         started=_utc_now(),
@@ -85,8 +86,8 @@ def open_unfinished(run: Run, *, display: Mapping[str, Any]) -> OpenRun:
     header = run.header
     study = parse_study(f"{run.journal} (the study file it holds)", header["study_text"]).study
     plan = make_plan(study, header["seed"], header["participant_number"])
-    journal, torn = reopen_journal(run)
-    journal.write([Continued(0.0, _utc_now(), torn, display)])
+    journal, run, torn = reopen_journal(run)
+    journal.write([Continued(0.0, _utc_now(), torn, display, _versions())])
     plan = remaining(plan, progress(run))
     return OpenRun(run, plan, journal, header["seed"], header["participant_number"], True)
 

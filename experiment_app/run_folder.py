@@ -71,19 +71,37 @@ def participant_runs(data: Path, study: str, participant: str) -> list[Run]:
     A folder whose journal has no whole line never began and does not count.
     """
     folder = study_folder(data, study) / "sourcedata" / f"sub-{participant}"
-    try:
-        numbers = sorted(int(p.name[4:]) for p in folder.glob("run-*") if p.name[4:].isdigit())
-    except OSError as error:
-        raise UsageError(f"{folder} cannot be read: {error.strerror}.") from None
+    numbers = run_numbers(data, study, participant)
     runs = [_read(folder / f"run-{number}", study, participant, number) for number in numbers]
     return [run for run in runs if run.lines]
 
 
 def participant_number(data: Path, study: str, participant: str) -> int:
-    """The participant's place in the order of arrival, from 1: how many others have a folder, and one."""
-    folder = study_folder(data, study) / "sourcedata"
-    others = {p.name for p in folder.glob("sub-*")} - {f"sub-{participant}"}
-    return len(others) + 1
+    """The participant's place in the order of arrival, from 1; the same in every run of the participant."""
+    known = {header["participant"]: int(header["participant_number"]) for header in first_headers(data, study)}
+    return known.get(participant, max(known.values(), default=0) + 1)
+
+
+def first_headers(data: Path, study: str) -> list[dict[str, Any]]:
+    """The header of every participant's first run, by participant; only first lines are read, damaged ones skipped."""
+    headers = []
+    for person in sorted((study_folder(data, study) / "sourcedata").glob("sub-*")):
+        for path in sorted(person.glob(f"run-*/{JOURNAL}"))[:1]:
+            try:
+                with open(path, encoding="utf-8") as file:
+                    headers.append(decode_line(file.readline()))
+            except (OSError, ValueError):
+                continue
+    return headers
+
+
+def run_numbers(data: Path, study: str, participant: str) -> list[int]:
+    """The numbers of the runs a participant has folders for, in order."""
+    folder = study_folder(data, study) / "sourcedata" / f"sub-{participant}"
+    try:
+        return sorted(int(p.name[4:]) for p in folder.glob("run-*") if p.name[4:].isdigit())
+    except OSError as error:
+        raise UsageError(f"{folder} cannot be read: {error.strerror}.") from None
 
 
 def new_run(data: Path, study: str, participant: str, number: int) -> Run:
@@ -158,8 +176,10 @@ def lock(file: IO[bytes], path: Path) -> None:
         if os.name == "nt":  # pragma: no cover - exercised on Windows only
             import msvcrt
 
-            file.seek(0x7FFFFFFF)
+            place = file.tell()
+            file.seek(0x7FFFFFFF)  # Windows locks bytes, not files: one far behind the journal's end
             msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined]
+            file.seek(place)
         else:
             import fcntl
 

@@ -9,7 +9,7 @@ from experiment_app.errors import UsageError
 from experiment_app.loop import run_session
 from experiment_app.observer import SimulatedParticipant, draw_observer
 from experiment_app.opening import open_new, open_unfinished, unfinished_run
-from experiment_app.run_folder import Run, participant_runs
+from experiment_app.run_folder import Run, first_headers, participant_runs
 from experiment_app.windows.undrawn import UndrawnWindow
 from protocols.design import default_seed
 from protocols.session import begin
@@ -31,11 +31,11 @@ def simulate(study: StudyFile, participants: int, data: Path, seed: int = 0, fir
     refuse_mixed(data, study.study.study, simulated=True)
     for number in range(first, first + participants):
         participant = f"S{number:03d}"
+        own_seed = default_seed(f"{study.study.study}/{seed}", participant, 1)
         runs = participant_runs(data, study.study.study, participant)
-        if runs and runs[-1].end:
-            yield runs[-1]
-            continue
-        yield _one(study, participant, data, default_seed(f"{study.study.study}/{seed}", participant, 1))
+        if runs:
+            _refuse_stale(runs[-1], study, own_seed)
+        yield runs[-1] if runs and runs[-1].end else _one(study, participant, data, own_seed)
 
 
 def _one(study: StudyFile, participant: str, data: Path, seed: int) -> Run:
@@ -51,14 +51,22 @@ def _one(study: StudyFile, participant: str, data: Path, seed: int) -> Run:
     return opened.run
 
 
+def _refuse_stale(run: Run, study: StudyFile, seed: int) -> None:
+    """Raises UsageError when a participant was simulated with another study file or seed."""
+    for what, same in (("another version of the study file", run.header["study_hash"] == study.hash),
+                       ("another seed", run.header["seed"] == seed)):  # fmt: skip
+        if not same:
+            raise UsageError(
+                f"{run.folder} was simulated with {what}; choose another folder with --data, or remove that one."
+            )
+
+
 def refuse_mixed(data: Path, study: str, *, simulated: bool) -> None:
     """Raises UsageError when the folder holds runs of the other kind: simulated among real or real among simulated."""
-    folder = data / study / "sourcedata"
-    for person in sorted(folder.glob("sub-*")):
-        runs = participant_runs(data, study, person.name.removeprefix("sub-"))
-        if runs and bool(runs[0].header.get("simulated")) != simulated:
+    for header in first_headers(data, study):
+        if bool(header.get("simulated")) != simulated:
             here, wanted = ("real", "simulated") if simulated else ("simulated", "real")
             raise UsageError(
-                f"{data / study} holds {here} participants ({person.name}); {wanted} ones must not be mixed "
-                "with them: choose another folder with --data."
+                f"{data / study} holds {here} participants ({header['participant']}); {wanted} ones must not be "
+                "mixed with them: choose another folder with --data."
             )

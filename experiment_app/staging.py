@@ -44,7 +44,7 @@ def _trial_scene(session: Session) -> Scene:
     return Scene((walker,), camera_of(study), study.stimulus.ground, caption=study.words.trial_caption)
 
 
-def _paragraphs(text: str) -> tuple[Line, ...]:
+def paragraphs(text: str) -> tuple[Line, ...]:
     """Paragraphs are parted by empty lines; single line breaks inside one are only wrapping in the file."""
     parts = [" ".join(part.split()) for part in text.replace("\r\n", "\n").split("\n\n")]
     return tuple(Line(part) for part in parts if part)
@@ -56,10 +56,10 @@ def _page(session: Session, form: Form) -> Page:
         lines: tuple[Line, ...] = (Line(words.questions_title, "title"),)
         return Page(lines, _rows(form), hint=words.question_hint)
     assert isinstance(step, TextStep)
-    lines = (Line(step.page.title, "title"), *_paragraphs(step.page.text))
+    lines = (Line(step.page.title, "title"), *paragraphs(step.page.text))
     if step.kind == "consent":
         return Page(lines, _rows(form), hint=words.choose_hint)
-    last = step.kind in ("debrief", "declined")
+    last = step.kind in ("debrief", "farewell")
     progress = None
     if step.kind == "break" and session.plan.total:
         progress = int(step.id.removeprefix("break-")) / session.plan.total
@@ -93,5 +93,5 @@ def _overlay_page(session: Session, overlay: Overlay) -> Page:
         "break": (words.break_title, words.break_text),
         "stop": (words.stop_title, words.stop_text),
     }[overlay.why]
-    lines = (Line(title, "title"), *_paragraphs(text))
+    lines = (Line(title, "title"), *paragraphs(text))
     return Page(lines, _rows(overlay.form), hint=words.choose_hint, over_scene=session.trial is not None)

@@ -11,6 +11,9 @@ from dataclasses import dataclass, field, replace
 
 from protocols.events import Clicked, Event, KeyDown, Typed
 
+JOINERS = "\u200c\u200d"
+"""Zero-width non-joiner and joiner: invisible, but part of the spelling in Persian and Indic scripts."""
+
 
 @dataclass(frozen=True)
 class Choice:
@@ -81,7 +84,7 @@ def _typed(form: Form, text: str) -> Form:
     entry = form.focused_field
     if not isinstance(entry, Entry):
         return form
-    kept = "".join(c for c in text if unicodedata.category(c)[0] not in "C")
+    kept = "".join(c for c in text if unicodedata.category(c)[0] != "C" or c in JOINERS)
     if entry.digits:
         kept = "".join(str(unicodedata.digit(c)) for c in kept if unicodedata.digit(c, None) is not None)
     value = (form.values.get(entry.id, "") + kept)[: 9 if entry.digits else entry.max_length]
@@ -103,9 +106,9 @@ def _key(form: Form, key: str) -> Form:
     stops = len(form.fields) + len(form.buttons)
     on = form.focused_field
     if key in ("tab", "down") and stops:
-        return replace(form, focus=(form.focus + 1) % stops)
-    if key == "up" and stops:
-        return replace(form, focus=(max(form.focus, 0) - 1) % stops)
+        return replace(_judged(form, on), focus=(form.focus + 1) % stops)
+    if key in ("up", "backtab") and stops:
+        return replace(_judged(form, on), focus=(max(form.focus, 0) - 1) % stops)
     if key == "backspace" and isinstance(on, Entry):
         return _with_value(form, on.id, form.values.get(on.id, "")[:-1])
     if key in ("left", "right"):
@@ -113,7 +116,7 @@ def _key(form: Form, key: str) -> Form:
         if isinstance(on, Choice):
             return _with_value(form, on.id, _neighbour(on, form.values.get(on.id), step))
         if on is None and len(form.buttons) > 1:
-            button = form.focus - len(form.fields) + step if form.focus >= 0 else (0 if step > 0 else -1)
+            button = form.focus - len(form.fields) + step if form.focus >= 0 else 0
             return replace(form, focus=len(form.fields) + button % len(form.buttons))
     if key == "enter" or (key == "space" and not isinstance(on, Entry) and form.focus >= 0):
         return _enter(form, key)
@@ -133,12 +136,18 @@ def _enter(form: Form, key: str) -> Form:
     if isinstance(on, Choice) and key == "space":
         return _with_value(form, on.id, _neighbour(on, form.values.get(on.id), 1))
     if on is not None:
-        return replace(form, focus=form.focus + 1)
+        return replace(_judged(form, on), focus=form.focus + 1)
     if form.focus >= len(form.fields):
         return _press(form, form.buttons[form.focus - len(form.fields)][0])
     if not form.fields and len(form.buttons) <= 1:
         return _press(form, form.buttons[0][0] if form.buttons else "next")
     return form
+
+
+def _judged(form: Form, left: Choice | Entry | None) -> Form:
+    """The form with what is wrong about a field that is being left; an empty field may still be filled."""
+    problem = _problem(form, left) if left is not None and form.values.get(left.id, "").strip() else ""
+    return replace(form, errors={**form.errors, left.id: problem}) if left is not None and problem else form
 
 
 def _press(form: Form, button: str) -> Form:

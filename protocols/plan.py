@@ -5,12 +5,13 @@ A plan follows from the study, the participant's number and the seed alone; it k
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
 from protocols.adjustment import AdjustmentTask
 from protocols.design import Trial, make_trials, practice_trials
-from protocols.study import Level, Question, Study, TextPage
+from protocols.study import Level, Pages, Question, Study, TextPage
 
 QUESTIONS_PER_PAGE = 4
 
@@ -21,7 +22,7 @@ class TextStep:
 
     id: str
     page: TextPage
-    kind: Literal["text", "consent", "break", "debrief", "declined"] = "text"
+    kind: Literal["text", "consent", "break", "debrief", "farewell"] = "text"
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ class Plan:
 def make_plan(study: Study, seed: int, participant_number: int) -> Plan:
     """The plan of one run; participant_number (from 1, order of arrival) decides counterbalanced keys."""
     trials = make_trials(study, seed)
-    pages = study.pages
+    pages = _with_keys(study, keys_of(study, participant_number))
     steps: list[Step] = [TextStep("consent", pages.consent, "consent")]
     asked = study.participants.questions
     for i in range(0, len(asked), QUESTIONS_PER_PAGE):
@@ -87,6 +88,41 @@ def value_of(setting: str | float, trial: Trial) -> Level:
     return trial.levels[setting[1:]] if isinstance(setting, str) and setting.startswith("$") else setting
 
 
+KEY_LABELS = {"left": "←", "right": "→", "up": "↑", "down": "↓"}
+"""How keys are called on a page, unless the study's words say otherwise; others by their name, as Enter or B."""
+
+
+def keys_of(study: Study, participant_number: int) -> dict[str, str]:
+    """What lower, raise, confirm and break are for a participant, whose number decides counterbalanced keys."""
+    keys = study.task.keys
+    lower, raise_ = keys.lower, keys.raise_
+    if keys.counterbalanced and participant_number % 2 == 0:
+        lower, raise_ = raise_, lower
+    return {"lower": lower, "raise": raise_, "confirm": keys.confirm, "break": keys.take_break}
+
+
+def _with_keys(study: Study, keys: Mapping[str, str]) -> Pages:
+    """The study's pages with {lower}, {raise}, {confirm} and {break} replaced by this participant's keys."""
+    labels = {**KEY_LABELS, **study.words.keys}
+
+    def filled(text: str) -> str:
+        for name, key in keys.items():
+            text = text.replace(f"{{{name}}}", labels.get(key, key.capitalize()))
+        return text
+
+    def page(old: TextPage | None) -> TextPage | None:
+        return None if old is None else TextPage(title=filled(old.title), text=filled(old.text))
+
+    pages = study.pages
+    return pages.model_copy(
+        update={
+            "instructions": [page(old) for old in pages.instructions],
+            "before_practice": page(pages.before_practice),
+            "before_trials": page(pages.before_trials),
+        }
+    )
+
+
 def _break_step(study: Study, done: int, total: int) -> TextStep:
     assert study.breaks is not None
     text = study.breaks.text.replace("{done}", str(done)).replace("{total}", str(total))
@@ -94,16 +130,13 @@ def _break_step(study: Study, done: int, total: int) -> TextStep:
 
 
 def _task(study: Study, participant_number: int) -> AdjustmentTask:
-    task, keys = study.task, study.task.keys
-    lower, raise_ = keys.lower, keys.raise_
-    if keys.counterbalanced and participant_number % 2 == 0:
-        lower, raise_ = raise_, lower
+    task, keys = study.task, keys_of(study, participant_number)
     return AdjustmentTask(
         minimum=task.range.minimum,
         maximum=task.range.maximum,
         rate=task.rate,
         minimum_looking_time=task.minimum_looking_time,
-        lower_key=lower,
-        raise_key=raise_,
-        confirm_key=keys.confirm,
+        lower_key=keys["lower"],
+        raise_key=keys["raise"],
+        confirm_key=keys["confirm"],
     )

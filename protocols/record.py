@@ -19,7 +19,10 @@ FORMAT = 1
 
 @dataclass(frozen=True)
 class Header:
-    """The first line of a journal: what is needed to read, repeat and cite the run."""
+    """The first line of a journal: what is needed to read, repeat and cite the run.
+
+    participant_number: order of arrival, from 1; keys: what lower, raise, confirm and break were for this participant.
+    """
 
     kind = "header"
     study: str
@@ -30,6 +33,7 @@ class Header:
     run: int
     seed: int
     simulated: bool
+    keys: Mapping[str, str]
     versions: Mapping[str, str]
     display: Mapping[str, Any]
     started: str
@@ -159,6 +163,7 @@ class Continued:
     started: str
     torn_bytes: int
     display: Mapping[str, Any]
+    versions: Mapping[str, str]
 
 
 @dataclass(frozen=True)

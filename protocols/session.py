@@ -28,6 +28,9 @@ from protocols.record import (
 )
 from protocols.study import ChoiceQuestion, NumberQuestion, Question, TextPage
 
+UNREAD = 0.25
+"""s after a page appears in which keys do nothing, so that pressing Enter twice leaves no page unseen."""
+
 
 @dataclass(frozen=True)
 class Interval:
@@ -116,8 +119,11 @@ def handle(session: Session, event: Event) -> Session:
     session = advance(session, event.time)
     if session.overlay is not None:
         return _overlaid(session, session.overlay, event)
-    if isinstance(event, KeyDown) and event.key == "escape":
+    if isinstance(event, KeyDown) and event.key == "escape" and not _last_page(session):
         return _paused(session, event, "pause")
+    in_trials = isinstance(session.stage, (AdjustmentTrial, Interval))
+    if isinstance(event, KeyDown) and event.key == session.plan.study.task.keys.take_break and in_trials:
+        return _paused(session, event, "break")
     if isinstance(session.stage, AdjustmentTrial):
         return _in_trial(session, session.stage, event)
     if isinstance(session.stage, Form):
@@ -129,8 +135,6 @@ def handle(session: Session, event: Event) -> Session:
 
 
 def _entered(session: Session, index: int, time: float) -> Session:
-    if index >= len(session.plan.steps):
-        return _ended(session, time, "finished")
     session = replace(session, index=index, shown=None, pauses=0, stage=_stage(session.plan, index))
     step = session.step
     if isinstance(step, TextStep) and step.kind == "debrief":
@@ -172,14 +176,17 @@ def _emit(session: Session, *records: Record) -> Session:
 
 
 def _ended(session: Session, time: float, reason: str) -> Session:
-    already = isinstance(session.step, TextStep) and session.step.kind in ("debrief", "declined")
-    if not already and reason != "finished":
-        session = _emit(session, Ended(time, reason))
-    return replace(session, ended="finished" if already and session.step.id == "debrief" else reason)
+    if _last_page(session):  # the end is recorded already
+        return replace(session, ended="finished" if session.step.id == "debrief" else session.step.id)
+    return replace(_emit(session, Ended(time, reason)), ended=reason)
+
+
+def _last_page(session: Session) -> bool:
+    return isinstance(session.step, TextStep) and session.step.kind in ("debrief", "farewell")
 
 
 def _seen(session: Session, event: Shown) -> Session:
-    if session.shown is not None or isinstance(session.stage, Interval):
+    if session.shown is not None or session.overlay is not None or isinstance(session.stage, Interval):
         return session
     session = replace(session, shown=event.time)
     step = session.step
@@ -194,6 +201,8 @@ def _seen(session: Session, event: Shown) -> Session:
 
 
 def _on_page(session: Session, form: Form, event: Event) -> Session:
+    if session.shown is None or (isinstance(event, KeyDown) and event.time < session.shown + UNREAD):
+        return session  # a key meant for the page before must not turn this one
     form = handle_form(form, event)
     session = replace(session, stage=form)
     if not form.pressed:
@@ -205,9 +214,9 @@ def _on_page(session: Session, form: Form, event: Event) -> Session:
     elif isinstance(step, TextStep) and step.kind == "consent":
         session = _emit(session, Consented(time, form.pressed == "agree"))
         if form.pressed != "agree":
-            return _declined(session, time)
-    elif isinstance(step, TextStep) and step.kind == "declined":
-        return replace(session, ended="declined")
+            return _farewell(session, time, "declined", session.plan.study.pages.declined)
+    elif isinstance(step, TextStep) and step.kind == "farewell":
+        return replace(session, ended=step.id)
     elif isinstance(step, TextStep) and step.kind == "debrief":
         return replace(_emit(session, left), ended="finished")
     else:
@@ -226,11 +235,10 @@ def _answers(step: QuestionsStep, values: Mapping[str, str], time: float) -> lis
     return answers
 
 
-def _declined(session: Session, time: float) -> Session:
+def _farewell(session: Session, time: float, reason: str, page: TextPage) -> Session:
     """A polite last page; the end is recorded at once, so that closing the window adds nothing."""
-    page = TextStep("declined", session.plan.study.pages.declined, "declined")
-    plan = replace(session.plan, steps=(page,))
-    return replace(_emit(session, Ended(time, "declined")), plan=plan, index=0, stage=Form(), shown=None)
+    plan = replace(session.plan, steps=(TextStep(reason, page, "farewell"),))
+    return replace(_emit(session, Ended(time, reason)), plan=plan, index=0, stage=Form(), shown=None)
 
 
 # Trials
@@ -239,14 +247,11 @@ def _declined(session: Session, time: float) -> Session:
 def _in_trial(session: Session, trial: AdjustmentTrial, event: Event) -> Session:
     step = session.step
     assert isinstance(step, TrialStep)
-    keys = session.plan.study.task.keys
     if isinstance(event, (KeyDown, KeyUp)) and trial.stage is adjustment.Stage.ADJUSTING:
         task = trial.task
         if event.key in (task.lower_key, task.raise_key, task.confirm_key):
             down = isinstance(event, KeyDown)
             session = _emit(session, Key(event.time, step.trial.number, step.trial.practice, event.key, down))
-        if isinstance(event, KeyDown) and event.key == keys.take_break:
-            return _paused(session, event, "break")
     if isinstance(event, FocusLost) and trial.held:
         session = _emit(session, Key(event.time, step.trial.number, step.trial.practice, "focus", False))
     trial = adjustment.handle(trial, event)
@@ -305,7 +310,8 @@ def _overlaid(session: Session, overlay: Overlay, event: Event) -> Session:
         really = Form(buttons=(("resume", words.resume), ("stop_really", words.stop_really)), focus=0)
         return replace(session, overlay=replace(overlay, why="stop", form=really))
     if form.pressed == "stop_really":
-        return _ended(session, event.time, "stopped")
+        page = TextPage(title=words.stopped, text=words.stopped_text)
+        return _farewell(replace(session, overlay=None), event.time, "stopped", page)
     return replace(session, overlay=replace(overlay, form=form))
 
 
@@ -339,9 +345,11 @@ class Progress:
 def remaining(plan: Plan, progress: Progress) -> Plan:
     """The plan without what is done: the same order, the interrupted trial again as its next attempt.
 
-    A page welcomes the participant back. Breaks before the first unfinished trial are not repeated.
+    A page welcomes the participant back and the instructions are shown again. Breaks before the first unfinished
+    trial are not repeated.
     """
-    left = set(progress.left) | ({"consent"} if progress.consented else set())
+    left = {step for step in progress.left if not step.startswith("instructions-") or not progress.consented}
+    left |= {"consent"} if progress.consented else set()
     steps: list[Step] = []
     for step in plan.steps:
         if step.id in left or (isinstance(step, TextStep) and step.kind == "break" and not _trials(steps)):
@@ -349,7 +357,9 @@ def remaining(plan: Plan, progress: Progress) -> Plan:
         if isinstance(step, TrialStep):
             step = replace(step, attempt=progress.begun.get(step.id, 0) + 1)
         steps.append(step)
-    if progress.consented:
+    if not _trials(steps):
+        steps = [step for step in steps if not step.id.startswith("instructions-")]
+    elif progress.consented:
         following = next((s.trial.number for s in _trials(steps) if not s.trial.practice), plan.total)
         words = plan.study.words
         text = words.welcome_back_text.replace("{next}", str(following)).replace("{total}", str(plan.total))

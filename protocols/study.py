@@ -5,11 +5,22 @@ The models are the single source of the JSON Schema (`gaitlab schema`) and of th
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
-Level = str | float | int
+
+def _level(value: Any) -> Any:
+    """Refuses what YAML reads as a truth value or as no number: neither names a level."""
+    if isinstance(value, bool):
+        raise ValueError("yes, no, true and false are no levels; write the word in quotes")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError("a level must be a finite number or a word")
+    return value
+
+
+Level = Annotated[str | float | int, BeforeValidator(_level)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=40)]
 Text = Annotated[str, Field(min_length=1)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
@@ -54,8 +65,8 @@ class NumberQuestion(Part):
     id: Name
     kind: Literal["number"]
     prompt: Text
-    minimum: int = Field(0, strict=True)
-    maximum: int = Field(120, strict=True)
+    minimum: int = Field(0, strict=True, ge=0)
+    maximum: int = Field(120, strict=True, le=999_999_999)
 
 
 class TextQuestion(Part):
@@ -153,11 +164,15 @@ class Breaks(Part):
 
 
 class Pages(Part):
-    """What the participant reads. {actor}-like placeholders are not used here; see each page's own."""
+    """What the participant reads.
+
+    In instructions, before_practice and before_trials, {lower}, {raise}, {confirm} and {break} become the
+    participant's own keys.
+    """
 
     consent: TextPage
     declined: TextPage = TextPage(
-        title="Thank you", text="You chose not to take part. Nothing about you has been stored."
+        title="Thank you", text="You chose not to take part. Only that you declined has been noted."
     )
     instructions: list[TextPage] = Field(min_length=1)
     before_practice: TextPage | None = None
@@ -178,18 +193,21 @@ class Words(Part):
     missing: Text = "Please answer this question."
     not_a_number: Text = "Please type a whole number from {minimum} to {maximum}."
     pause_title: Text = "Paused"
-    pause_text: Text = "The walker waits for you."
+    pause_text: Text = "The study waits for you."
     resume: Text = "Go on"
     stop: Text = "Stop the session"
     stop_title: Text = "Stop the session?"
     stop_text: Text = "Everything you have answered so far is kept. You can come back later."
     stop_really: Text = "Yes, stop"
     break_title: Text = "Break"
-    break_text: Text = "Rest as long as you like. The walker waits for you."
+    break_text: Text = "Rest as long as you like. The study waits for you."
+    stopped: Text = "Thank you"
+    stopped_text: Text = "You have stopped, and your answers so far are kept. Please tell the experimenter."
     welcome_back: Text = "Welcome back"
     welcome_back_text: Text = "You will go on where you left off: trial {next} of {total}."
     finished_hint: Text = "Press Enter to close"
-    trial_caption: Text = ""
+    trial_caption: str = Field("", description="A line under the walker during trials.")
+    keys: dict[Key, Text] = Field(default_factory=dict, description="What keys are called on pages, as enter: Entrée.")
 
 
 class Anova(Part):
@@ -214,11 +232,47 @@ class TTest(Part):
     label: Text = "reference value"
 
 
+class Equivalence(Part):
+    """Evidence for sameness: two one-sided tests of every pair of levels of a factor."""
+
+    factor: Name = Field(description="Whose levels are compared, pair by pair.")
+    bound: float = Field(
+        strict=True,
+        gt=0.0,
+        allow_inf_nan=False,
+        description="The largest difference that would not matter, in the unit of the measure.",
+    )
+    by: Name | None = Field(None, description="Inside each level of this factor; averaged over the others if left out.")
+
+
+class Regression(Part):
+    """Regression of the mean of every level of a factor on what is known of that level."""
+
+    of: Name = Field(description="The factor whose levels are the cases, as actor.")
+    on: dict[Name, dict[str, Number]] = Field(min_length=1, description="Predictor: {level: value}.")
+
+
+class RankTransform(Part):
+    """Aligned rank transform: the analysis of variance for measures far from normal, contrasts by ART-C."""
+
+    within: list[Name] = Field(default_factory=list)
+    between: list[Name] = Field(default_factory=list)
+
+
+class MixedModel(Part):
+    """Linear mixed model of single trials, with random intercepts of participants and stimuli, crossed."""
+
+    stimulus: Name = Field(description="The factor whose levels are a sample of stimuli, as actor.")
+    factors: list[Name] = Field(min_length=1, description="Fixed factors, with all their interactions.")
+
+
 class Figure(Part):
     """A figure of the report."""
 
-    kind: Literal["means", "interaction"]
-    x: Name
+    kind: Literal["means", "interaction", "raincloud", "qq", "order"] = Field(
+        description="qq: residuals against a normal distribution; order: the measure over the session, for learning."
+    )
+    x: Name | None = Field(None, description="Factor on the x axis; qq and order have none.")
     lines: Name | None = None
     reference: Text | None = Field(None, description="Label of the t-test whose values are drawn as diamonds.")
 
@@ -230,18 +284,39 @@ class Exclusion(Part):
     reason: Text
 
 
-class Analysis(Part):
-    """The analysis planned before the data."""
+class FurtherAnalysis(Part):
+    """One measure and what is computed of it."""
 
-    measure: Literal["walk_ratio", "step_frequency", "step_length", "response_time"] = "walk_ratio"
+    measure: Literal[
+        "walk_ratio", "step_frequency", "step_length", "response_time", "normalised_walk_ratio", "confusion_rate"
+    ] = Field(
+        "walk_ratio",
+        description="normalised_walk_ratio needs heights; confusion_rate (%) needs trials in which one walk is chosen.",
+    )
     label: Text = "Walk ratio"
     unit: str = "m·min"
-    anova: Anova
+    heights: dict[str, Annotated[float, Field(strict=True, ge=0.5, le=2.5)]] | None = Field(
+        None, description="Body height of every actor, m, for normalised_walk_ratio (Hof 1996)."
+    )
+    anova: Anova = Anova()
     post_hoc: PostHoc | None = PostHoc()
     t_tests: list[TTest] = Field(default_factory=list)
+    equivalence: list[Equivalence] = Field(default_factory=list)
+    regression: Regression | None = None
+    aligned_rank_transform: RankTransform | None = None
+    mixed_model: MixedModel | None = None
     normality: Literal["shapiro_wilk"] | None = "shapiro_wilk"
     figures: list[Figure] = Field(default_factory=list)
-    exclusions: list[Exclusion] = Field(default_factory=list)
+
+
+class Analysis(FurtherAnalysis):
+    """The analysis planned before the data."""
+
+    anova: Anova
+    exclusions: list[Exclusion] = Field(default_factory=list, description="For every measure alike.")
+    also: list[FurtherAnalysis] = Field(
+        default_factory=list, description="Further measures, each analysed on its own, in a folder of its own."
+    )
 
 
 class Preference(Part):

@@ -129,15 +129,32 @@ def _load_yaml(name: str, text: str) -> Any:
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
-        problem = (error.problem or "not valid YAML").split("\n")[0]
-        if "\\t" in problem:
-            problem = "a tab cannot indent or begin a value in YAML; use spaces"
-        elif problem.startswith("found duplicate key"):
-            problem = problem.split(" with value")[0] + "; keep one of the two"
+        problem = _yaml_problem(error)
         raise StudyFileError(name, [Mistake((), problem, line=line, column=column)]) from None
     except (YAMLError, ValueError, RecursionError) as error:
         reason = str(error).split("\n")[0] or type(error).__name__
         raise StudyFileError(name, [Mistake((), f"not valid YAML: {reason}")]) from None
+
+
+def _yaml_problem(error: Any) -> str:
+    """What is wrong with the YAML, in the words of somebody who types it; error: ruamel's MarkedYAMLError."""
+    problem = (error.problem or "not valid YAML").split("\n")[0]
+    opened = f"at {error.context_mark.line + 1}:{error.context_mark.column + 1}" if error.context_mark else "above"
+    if "\\t" in problem:
+        return "a tab cannot indent or begin a value in YAML; use spaces"
+    if problem.startswith("found duplicate key"):
+        return problem.split(" with value")[0] + "; keep one of the two"
+    if problem.startswith("mapping values are not allowed"):
+        return 'a text with a colon in it needs quotes, as "Sex: which?"; or a quote in a line above is not closed'
+    if problem.startswith("could not find expected ':'"):
+        return "a colon and a space are missing here or in the line above, as in rate: 10"
+    if problem.startswith(("expected ',' or", "did not find expected ',' or")):
+        return f"the bracket opened {opened} is not closed before this"
+    if "end of stream" in problem and "quoted" in (error.context or ""):
+        return f"the quote opened {opened} is not closed"
+    if problem.startswith("expected <block end>"):
+        return "this line is indented differently from its neighbours, or a quote ends too early in it"
+    return problem
 
 
 def _plain(node: Any) -> Any:

@@ -61,15 +61,17 @@ def test_the_yaml_of_the_study_file_page_is_accepted_in_a_study():
     from protocols.study_file import parse_study
     from tests.protocols.studies import shipped_text
 
-    questions, keys, analysis = blocks(ROOT / "docs" / "study-file.md", "yaml")
+    questions, keys, words, analysis = blocks(ROOT / "docs" / "study-file.md", "yaml")
     text = shipped_text()
     start, end = text.index("analysis:\n"), text.index("# Simulated observers")
     text = text[:start] + analysis + "\n" + text[end:]
     start, end = text.index("  questions:"), text.index("# Design")
     text = text[:start] + "".join(f"  {line}\n" for line in questions.splitlines()) + "\n" + text[end:]
     text = re.sub(r"  keys: .*", f"  {keys.strip()}", text)
-    file = parse_study("page.yaml", text)
+    file = parse_study("page.yaml", text.replace("language: en\n", words))
     assert inconsistencies(file.study) == []
+    texts = {name for name, field in type(file.study.words).model_fields.items() if field.default}
+    assert texts <= file.study.words.model_fields_set, "the French example names every word"
 
 
 @pytest.mark.slow

@@ -50,12 +50,12 @@ class DesktopWindow:
         try:
             glfw.make_context_current(self._handle)
             self._context = moderngl.create_context(require=330)
+            width, height = glfw.get_framebuffer_size(self._handle)
+            self._renderer = Renderer(self._context, (width, height), self._pixel_ratio(), samples)
         except Exception as error:
             glfw.terminate()
             raise UsageError(f"OpenGL 3.3 is needed and could not be started ({error}).") from None
         self._connect()
-        width, height = glfw.get_framebuffer_size(self._handle)
-        self._renderer = Renderer(self._context, (width, height), self._pixel_ratio(), samples)
         self._pacing = self._probe(refresh)
         self._last_flip = self._now()
 
@@ -163,9 +163,11 @@ class DesktopWindow:
     def _connect(self) -> None:
         """Every callback stamps the time before anything else."""
 
-        def on_key(_: Any, key: int, scancode: int, action: int, __: int) -> None:
+        def on_key(_: Any, key: int, scancode: int, action: int, modifiers: int) -> None:
             now = self._now()
-            if action == glfw.PRESS:
+            if action == glfw.PRESS and key == glfw.KEY_TAB and modifiers & glfw.MOD_SHIFT:
+                self._events.append(KeyDown(now, "backtab"))
+            elif action == glfw.PRESS:
                 self._events.append(KeyDown(now, key_name(key, scancode)))
             elif action == glfw.RELEASE:
                 self._events.append(KeyUp(now, key_name(key, scancode)))

@@ -13,7 +13,7 @@ import pytest
 from experiment_app.command import app, run
 from tests.protocols.studies import changed
 
-COMMANDS = ("run", "check", "simulate", "analyse", "demo", "schema", "copy")
+COMMANDS = tuple(name for name in app if not name.startswith("-"))
 
 
 def said(capfd) -> str:
@@ -27,8 +27,47 @@ def test_every_command_has_help(name, capfd):
     assert len(said(capfd)) > 200
 
 
-def test_the_commands_are_those_of_the_documentation():
-    assert {name for name in app if not name.startswith("-")} == set(COMMANDS)
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_is_in_the_documentation(name):
+    root = Path(__file__).parents[2]
+    pages = [root / "README.md", *(root / "docs").glob("*.md")]
+    assert any(f"gaitlab {name}" in page.read_text(encoding="utf-8") for page in pages)
+
+
+def test_the_version_is_the_projects():
+    import tomllib
+
+    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    done = subprocess.run([sys.executable, "-m", "experiment_app", "--version"], capture_output=True, text=True)
+    assert done.stdout.strip() == project["version"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("actor: [F1, F2, M1, M2]  ", "colour: [red, blue]\n  actor: [F1, F2, M1, M2]", "colour changes nothing"),
+        ("keys: {lower: left, raise: right,", "keys: {lower: f, raise: j,", ""),
+        ("Hold {lower} for", "Hold ← for", ""),
+        ("language: en", "language: fr", "the buttons and hints are English"),
+        (
+            "There is no right or wrong answer",
+            "There is no right or wrong answer " + "so take your time " * 400,
+            "two pages",
+        ),
+    ],
+)
+def test_check_notes_what_is_allowed_but_hardly_meant(tmp_path, capfd, old, new, says):
+    path = tmp_path / "mine.yaml"
+    path.write_text(changed((old, new)), encoding="utf-8")
+    assert run(["check", str(path)]) == 0
+    assert says in said(capfd).replace("\n", " ")
+
+
+def test_check_notes_arrows_in_the_instructions_that_are_not_the_keys(tmp_path, capfd):
+    path = tmp_path / "mine.yaml"
+    path.write_text(changed(("keys: {lower: left,", "keys: {lower: f,"), ("Hold {lower} for", "Hold ← for")), "utf-8")
+    assert run(["check", str(path)]) == 0
+    assert "the instructions name ←, which is no key of the task" in said(capfd)
 
 
 def test_check_accepts_the_shipped_study_and_counts_its_trials(capfd):

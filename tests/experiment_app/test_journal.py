@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import signal
 import subprocess
@@ -14,8 +15,11 @@ from random import Random
 import pytest
 
 from experiment_app.errors import RunError, UsageError
+from experiment_app.journal import append_line
+from experiment_app.opening import open_new, open_unfinished, unfinished_run
 from experiment_app.run_folder import journal_lines, participant_runs
 from protocols.design import conditions
+from protocols.record import Answered
 from tests.experiment_app.sessions import opened, play
 from tests.protocols.studies import shipped_text, short
 
@@ -104,6 +108,71 @@ def test_a_full_disk_ends_the_run_with_a_sentence_and_keeps_what_was_written(tmp
     play(opened(tmp_path))
     runs = participant_runs(tmp_path, "walk_ratio", "P01")
     assert runs[-1].end == "finished"
+
+
+def test_a_disk_that_takes_half_a_line_keeps_whole_lines_only(tmp_path, monkeypatch):
+    """A nearly full disk accepts part of a write without an error, and refuses the rest."""
+
+    class Disk(io.FileIO):
+        room = 1500
+
+        def write(self, data):  # type: ignore[no-untyped-def]
+            if not self.room:
+                raise OSError(28, "No space left on device")
+            taken = super().write(bytes(data)[: self.room])
+            self.room -= taken
+            return taken
+
+    with Disk(tmp_path / "journal", "xb") as disk:
+        for number in range(100):
+            try:
+                append_line(disk, "x" * 100 + str(number))
+            except OSError:
+                break
+    lines = (tmp_path / "journal").read_text().split("\n")
+    assert lines[-1] == ""
+    assert all(len(line) >= 101 for line in lines[:-1])
+    assert len(lines) == 15
+
+
+def test_whatever_goes_wrong_while_writing_reaches_the_loop(tmp_path):
+    run = opened(tmp_path)
+    run.journal.write([Answered(float("nan"), "age", 30)])
+    with pytest.raises(RunError, match="can no longer be written"):
+        run.journal.wait()
+
+
+def test_a_run_that_was_finished_elsewhere_meanwhile_is_not_gone_on_with(tmp_path):
+    first = opened(tmp_path)
+    first.journal.close()
+    seen = unfinished_run(tmp_path, "walk_ratio", "P01")
+    assert seen is not None
+    play(opened(tmp_path))
+    with pytest.raises(UsageError, match="has finished meanwhile"):
+        open_unfinished(seen, display={})
+
+
+def test_a_participant_keeps_the_number_of_arrival_in_a_second_run_and_nobody_else_gets_it(tmp_path):
+    for participant in ("P01", "P02"):
+        play(opened(tmp_path, participant))
+    again = open_new(short(), "P01", tmp_path, display={}, simulated=True, again=True)
+    third = opened(tmp_path, "P03")
+    assert (again.participant_number, again.run.number) == (1, 2)
+    assert third.participant_number == 3
+    again.journal.close()
+    third.journal.close()
+
+
+def test_one_damaged_journal_does_not_stop_other_participants_nor_a_new_run(tmp_path):
+    run = opened(tmp_path)
+    play(run)
+    lines = run.run.journal.read_bytes().split(b"\n")
+    lines[3] = b"garbage"
+    run.run.journal.write_bytes(b"\n".join(lines))
+    play(opened(tmp_path, "P02"))
+    again = open_new(short(), "P01", tmp_path, display={}, simulated=True, again=True)
+    again.journal.close()
+    assert again.run.number == 2
 
 
 def test_a_data_folder_that_cannot_be_made_is_said_before_anything_starts(tmp_path):

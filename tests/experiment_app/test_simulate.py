@@ -58,6 +58,15 @@ def test_simulating_again_leaves_finished_participants_as_they_are(tmp_path):
     assert second[:2] == first
 
 
+def test_another_study_file_or_seed_is_refused_rather_than_mixed_in(tmp_path):
+    list(simulate(short(), 1, tmp_path, seed=1))
+    with pytest.raises(UsageError, match="simulated with another seed"):
+        list(simulate(short(), 1, tmp_path, seed=2))
+    other = parse_study("s.yaml", short().text + "\n# edited\n")
+    with pytest.raises(UsageError, match="simulated with another version of the study file"):
+        list(simulate(other, 1, tmp_path, seed=1))
+
+
 def test_simulated_participants_are_not_mixed_with_real_ones(tmp_path, monkeypatch):
     import experiment_app.opening as opening
 

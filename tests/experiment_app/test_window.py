@@ -58,7 +58,7 @@ class Sitting:
             lines = self.lines()
             if lines and what(lines):
                 return lines
-            assert self.process.poll() is None or what(self.lines()), self.process.communicate()[0]
+            assert self.process.poll() is None or (self.lines() and what(self.lines())), self.process.communicate()[0]
             time.sleep(0.02)
         raise AssertionError([line["kind"] for line in self.lines()])
 
@@ -177,7 +177,7 @@ def test_refusing_consent_ends_politely_and_stores_only_the_refusal(sit):
     person = sit("P02")
     person.wait(lambda lines: lines[0]["kind"] == "header")
     time.sleep(1.0)
-    person.key("Left", "Return")
+    person.key("Right", "Right", "Return")
     person.wait(lambda lines: number_of(lines, "end") == 1)
     time.sleep(0.5)
     person.key("Return")

@@ -63,7 +63,22 @@ def test_enter_on_a_consent_page_without_a_choice_does_nothing():
     form = Form(buttons=(("agree", "I agree"), ("decline", "No")))
     assert not keyed(form, "enter", "space").pressed
     assert keyed(form, "right", "enter").pressed == "agree"
-    assert keyed(form, "left", "enter").pressed == "decline"
+    assert keyed(form, "left", "enter").pressed == "agree"  # one press never lands on the refusal
+    assert keyed(form, "right", "right", "enter").pressed == "decline"
+
+
+def test_an_impossible_number_is_said_when_its_field_is_left():
+    assert "from 18 to 99" in keyed(questions(), "1", "5", "0", "tab").errors["age"]
+    assert "age" not in keyed(questions(), "tab").errors
+
+
+def test_shift_and_tab_go_back():
+    assert keyed(questions(), "tab", "tab", "backtab").focus == 1
+
+
+def test_joiners_that_belong_to_a_spelling_are_kept():
+    form = handle_form(Form(fields=(Entry("n", "?"),), focus=0), Typed(0.0, "می\u200cروم\u202e"))
+    assert form.values["n"] == "می\u200cروم"
 
 
 def test_enter_leaves_a_page_that_is_only_to_be_read():

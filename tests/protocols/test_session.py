@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from protocols.adjustment import AdjustmentTrial
-from protocols.events import Clicked, Closed, KeyDown, KeyUp, Saved, Shown, Typed
+from protocols.events import Clicked, Closed, FocusLost, KeyDown, KeyUp, Saved, Shown, Typed
 from protocols.plan import TrialStep, make_plan
 from protocols.record import Ended, Key, TrialRecord
 from protocols.session import Interval, Progress, Session, advance, begin, drained, handle, remaining
@@ -122,6 +122,9 @@ def test_stopping_asks_once_more_and_keeps_everything(player):
     player.until("trial-3").do(Shown(0), KeyDown(0, "escape"), Clicked(0, "stop"))
     assert not player.session.done
     player.do(Clicked(0, "stop_really"))
+    assert [r.reason for r in player.records if isinstance(r, Ended)] == ["stopped"]
+    assert not player.session.done  # a last page says thank you
+    player.do(Shown(0), KeyDown(0, "enter"))
     assert player.session.ended == "stopped"
 
 
@@ -144,8 +147,64 @@ def test_every_task_key_is_recorded_with_its_time(player):
 def test_counterbalanced_keys_swap_for_every_second_participant():
     text = changed(("counterbalanced: false", "counterbalanced: true"))
     study = parse_study("s.yaml", text).study
-    keys = [(make_plan(study, 1, n).task.lower_key, make_plan(study, 1, n).task.raise_key) for n in (1, 2, 3)]
+    plans = [make_plan(study, 1, n) for n in (1, 2, 3)]
+    keys = [(plan.task.lower_key, plan.task.raise_key) for plan in plans]
     assert keys == [("left", "right"), ("right", "left"), ("left", "right")]
+    told = [next(s.page.text for s in plan.steps if s.id == "instructions-1") for plan in plans]  # type: ignore[union-attr]
+    assert "Hold ← for fewer" in told[0]
+    assert "Hold → for fewer" in told[1]
+
+
+def test_a_page_is_not_left_by_a_key_meant_for_the_page_before(player):
+    player.until("instructions-1").do(Shown(0))
+    player.session = handle(player.session, KeyDown(player.time + 1.0, "enter"))
+    assert player.session.step.id == "instructions-2"
+    player.session = handle(player.session, KeyDown(player.time + 1.01, "enter"))  # not seen yet
+    player.session = handle(player.session, Shown(player.time + 1.02))
+    player.session = handle(player.session, KeyDown(player.time + 1.1, "enter"))  # hardly seen
+    assert player.session.step.id == "instructions-2"
+    player.session = handle(player.session, KeyDown(player.time + 2.0, "enter"))
+    assert player.session.step.id == "before-practice"
+
+
+def test_escape_before_a_trials_first_frame_does_not_start_it_under_the_pause_page(player):
+    player.until("trial-1").do(KeyDown(0, "escape"), Shown(0))
+    assert [r.kind for r in player.records][-1] == "pause"
+    player.do(KeyDown(0, "enter"), Shown(0))
+    assert [r.kind for r in player.records][-2:] == ["resume", "begin"]
+
+
+def test_a_break_can_be_taken_between_trials_too(player):
+    player.until("trial-1").do(Shown(0), KeyDown(0, "x"), KeyDown(0, "x"), KeyDown(0, "enter"), KeyDown(0, "b"))
+    assert player.session.overlay is not None
+    player.do(KeyDown(0, "enter")).saved()
+    assert player.session.step.id == "trial-2"
+
+
+def test_nothing_is_added_after_a_refusal(player):
+    player.do(Shown(0), Clicked(0, "decline"), Shown(0), KeyDown(0, "escape"), Closed(0))
+    assert player.session.ended == "declined"
+    assert [r.kind for r in player.records] == ["consent", "end"]
+
+
+def test_a_pause_has_its_length_and_counts_in_its_trial(player):
+    player.until("trial-1").do(Shown(0), KeyDown(0, "right"), KeyDown(0, "escape"))
+    player.time += 60.0
+    player.do(KeyDown(0, "enter"), KeyDown(0, "enter"))
+    resume = next(r for r in player.records if r.kind == "resume")
+    record = player.records[-1]
+    assert resume.paused == 61.0
+    assert (record.pauses, record.response_time) == (1, 3.0)  # 2 s before the pause, 1 s after
+
+
+def test_a_set_break_is_recorded_as_a_pause(player):
+    player.until("trial-3")
+    assert [r.why for r in player.records if r.kind == "pause"] == ["set break"]
+
+
+def test_losing_focus_while_holding_is_recorded(player):
+    player.until("trial-1").do(Shown(0), KeyDown(0, "right"), FocusLost(0))
+    assert player.records[-1].key == "focus"
 
 
 @pytest.mark.parametrize("finished", [0, 1, 2, 3, 4])
@@ -158,8 +217,10 @@ def test_going_on_repeats_nothing_that_is_done_and_keeps_the_order(finished):
     trials = [s for s in rest.steps if isinstance(s, TrialStep)]
     assert [t.trial for t in trials] == [s.trial for s in plan.steps if isinstance(s, TrialStep)][2 + finished :]
     assert [t.attempt for t in trials] == ([2] + [1] * (3 - finished) if finished < 4 else [])
-    assert rest.steps[0].id == "welcome-back"
-    assert rest.steps[-1].id == "debrief"
+    if finished < 4:
+        assert [s.id for s in rest.steps[:3]] == ["welcome-back", "instructions-1", "instructions-2"]
+    assert [s.id for s in rest.steps if s.id == "debrief"] == ["debrief"]
+    assert len(rest.steps) == (3 + len(trials) + (finished < 2) + 1 if finished < 4 else 1)
 
 
 def test_a_run_interrupted_before_consent_begins_with_consent():

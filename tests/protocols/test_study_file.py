@@ -56,6 +56,12 @@ def place(text: str, sought: str) -> str:
         ("view: three_quarter", "view: sideways", "sideways", "allowed: three_quarter, side, front or legs"),
         ("exclusions: [] ", "exclusions: [{where: lat > 5, reason: x}]", "lat > 5", "lat is no column"),
         ("planned: 22", "planned: 22.5", "22.5", "22.5"),
+        ("speed: $speed", "speed: $sped", "$sped", "did you mean $speed?"),
+        ("repetitions: 4 ", "repetitions: 900 ", "900 ", "21600 trials; at most 10000"),
+        ("{actor: T1, speed: 1.0,", "{actor: T1, speed: -1.0,", "-1.0", "must be more than 0"),
+        ("[0.8, 1.0, 1.2]", "[0.8, .inf, 1.2]", ".inf", "a level must be a finite number"),
+        ("start: [80, 120] ", "start: [80, 80.0] ", "80.0]", "level 80.0 stands twice"),
+        ("actor: [F1, F2, M1, M2] ", "actor: [F1, yes, M1, M2]\n  trial: [a, b]", "trial: [a", "name of a column"),
     ],
 )  # fmt: skip
 def test_a_mistake_is_named_with_line_column_and_what_is_allowed(old, new, at, says):
@@ -80,6 +86,10 @@ def test_all_mistakes_are_reported_at_once():
         ("study: a\ntitle: b\nstudy: c\n", 's.yaml:3:1: found duplicate key "study"'),
         ("study: [a\n", "s.yaml:2:1:"),
         ("- a\n", "s.yaml:1:1: the file is"),
+        ("study: Sex: which\n", "s.yaml:1:11: a text with a colon in it needs quotes"),
+        ("a: [1, 2\nb: 3\n", "s.yaml:2:2: the bracket opened at 1:4 is not closed"),
+        ("a: 'x\n", "s.yaml:2:1: the quote opened at 1:4 is not closed"),
+        ("a:\n  b: 1\n c: 2\n", "s.yaml:3:2: this line is indented differently"),
         ("study: !!python/object/apply:os.system ['true']\n", "s.yaml:1:"),
     ],
 )
