@@ -47,6 +47,7 @@ def journal_lines(
             1,
             number,
             simulated,
+            {"lower": "left", "raise": "right", "confirm": "enter", "break": "b"},
             {"gaitlab": "0.1.0", "python": "3.11"},
             {"width": 1920},
             "2026-11-22T10:00:00Z",

@@ -77,7 +77,8 @@ def test_the_report_stands_alone_and_says_that_nobody_was_there(
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "http" not in page.replace("http-equiv", "")
     assert "<script" not in page
-    assert page.count("data:image/svg+xml;base64,") == 3
+    assert page.count("<b>Figure ") == 3
+    assert page.count("data:image/svg+xml;base64,") == 3 + 2  # Q-Q plots beside the ANOVA and the t tests
     assert page.index("Simulated participants") < page.index("Results in short")
     assert outcome.simulated
     for sentence in outcome.headlines:

@@ -199,7 +199,8 @@ def test_a_signal_in_a_trial_records_its_name_and_the_run_goes_on_later(sit, num
     again = sit("P01", "--resume", "yes")
     again.wait(lambda lines: number_of(lines, "continue") == 1)
     time.sleep(1.0)
-    again.until_key("Return", "page")  # welcome back
+    for _ in range(3):  # welcome back, and the two pages of instructions again
+        again.until_key("Return", "page")
     lines = again.wait(lambda lines: number_of(lines, "begin") == 2)
     begun = [line for line in lines if line["kind"] == "begin"][-1]
     assert (begun["practice"], begun["attempt"]) == (True, 2)

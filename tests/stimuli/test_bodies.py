@@ -6,12 +6,12 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from stimuli.bodies import BodyError, body_names, hair_names, load_body, scaled, with_girths
+from stimuli.bodies import BodyError, hair_names, load_body, scaled, shipped_names, with_girths
 from stimuli.body_files.baked import read_baked
 from stimuli.skeleton import JOINTS, PARENTS
 from stimuli.skinning import skin
 
-NAMES = body_names()
+NAMES = shipped_names()
 MIRROR = np.array(
     [
         JOINTS.index(_other)

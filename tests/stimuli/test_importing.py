@@ -1,0 +1,319 @@
+"""From a folder of captures to an actor: what is found, what is refused in one sentence, and nothing left behind."""
+
+import csv
+import json
+import re
+import shutil
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stimuli.actor_library import actor_of, imported_names
+from stimuli.importing.clip_report import clip_lines, clip_report
+from stimuli.importing.description import read_description
+from stimuli.importing.errors import ImportingError
+from stimuli.importing.folder import import_folder
+from stimuli.importing.walks import read_walk
+from stimuli.measure import delivered_gait
+from stimuli.motion_files.errors import MotionFileError
+
+MOCAP = Path(__file__).parents[2].parent / "shared" / "mocap"
+CMU = MOCAP / "bvh" / "cmu"
+needs_captures = pytest.mark.skipif(not CMU.exists(), reason="the shared captures are not beside the checkout")
+
+ABOUT = {"sex": "male", "height": 1.65, "weight": 65, "age": 30, "licence": "CMU terms", "source": "mocap.cs.cmu.edu"}
+
+
+def described(folder: Path, **changes) -> Path:
+    """actor.yaml of CMU subject 07 (height from the leg's length), with changes; None takes a line out."""
+    folder.mkdir(exist_ok=True)
+    about = {**ABOUT, **changes}
+    lines = [f"{key}: {json.dumps(value)}" for key, value in about.items() if value is not None]
+    (folder / "actor.yaml").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return folder
+
+
+def captured(folder: Path, *names: str, **changes) -> Path:
+    described(folder, **changes)
+    for name in names:
+        shutil.copyfile(CMU / f"cmu_{name}.bvh", folder / f"cmu_{name}.bvh")
+    return folder
+
+
+def manifest() -> list[dict[str, str]]:
+    if not CMU.exists():
+        return []
+    with (MOCAP / "MANIFEST.csv").open(newline="", encoding="utf-8") as stream:
+        return [
+            row for row in csv.DictReader(stream) if row["file"].startswith("bvh/cmu/") and "32_02" not in row["file"]
+        ]
+
+
+@needs_captures
+@pytest.mark.parametrize("row", manifest()[::3], ids=lambda row: Path(row["file"]).stem)
+def test_the_clip_report_has_the_manifests_figures(row):
+    report = clip_report(MOCAP / row["file"])
+    tolerance = 0.06 if int(row["n_steps_used"]) <= 2 else 0.02
+    assert report["format"] == "BVH"
+    assert report["frames"] == int(row["frames"])
+    assert report["rate"] == pytest.approx(float(row["frame_rate_hz"]))
+    assert report["unit_to_m"] == float(row["unit_to_m"])
+    assert report["up"] == "+Y"
+    assert report["speed_m_s"] == pytest.approx(float(row["speed_m_s"]), rel=tolerance)
+    assert report["step_frequency_steps_min"] == pytest.approx(float(row["step_freq_steps_min"]), rel=tolerance)
+    assert report["walk_ratio_m_min"] == pytest.approx(
+        report["step_length_m"] / report["step_frequency_steps_min"], rel=1e-4
+    )
+    json.dumps(report, allow_nan=False)
+
+
+@needs_captures
+def test_a_standing_trial_is_described_and_has_no_gait():
+    pytest.importorskip("ezc3d")
+    report = clip_report(MOCAP / "c3d" / "schreiber-moissenet" / "2014019_ST.c3d")
+    assert report["speed_m_s"] is None
+    assert report["steps_used"] == 0
+    assert any("whole stride" in warning for warning in report["warnings"])
+    assert any("Note" in line for line in clip_lines(report))
+
+
+@needs_captures
+def test_self_chosen_speeds_make_a_path_on_which_step_frequency_follows(tmp_path):
+    actor = import_folder(captured(tmp_path / "in", "07_01", "07_03", "07_10"), "anna", tmp_path / "library")
+    assert actor.follows
+    assert [bool(cycle.files) for cycle in actor.cycles] == [True, True, True]
+    speeds = [cycle.speed for cycle in actor.cycles]
+    assert speeds == pytest.approx([1.030, 1.372, 1.596], rel=0.02)  # MANIFEST.csv
+    drawn = actor_of(actor)
+    middle = actor.cycles[1]
+    delivered = delivered_gait(drawn, middle.speed, middle.step_frequency)
+    assert delivered.speed == pytest.approx(middle.speed, rel=1e-3)
+    assert delivered.step_frequency == pytest.approx(middle.step_frequency, rel=1e-3)
+    with pytest.raises(ValueError, match="complete"):
+        delivered_gait(drawn, middle.speed, middle.step_frequency - 15.0)
+
+
+@needs_captures
+def test_complete_fills_the_metronomes_grid_around_the_captured_walks(tmp_path, monkeypatch):
+    from stimuli.actors import actor_names, load_actor
+
+    monkeypatch.setenv("GAITLAB_ACTORS", str(tmp_path / "library"))
+    actor = import_folder(captured(tmp_path / "in", "07_01", "07_03", "07_08", "07_10", complete=True), "anna")
+    assert sum(bool(cycle.files) for cycle in actor.cycles) == 4
+    assert actor.provenance == "4 cycles captured, 34 modelled; licence: CMU terms; source: mocap.cs.cmu.edu"
+    assert "anna" in actor_names()
+    drawn = load_actor("anna")
+    assert drawn.provenance == actor.provenance
+    for speed in (0.8, 1.0, 1.2):
+        for step_frequency in (80.0, 97.0, 120.0):
+            delivered = delivered_gait(drawn, speed, step_frequency)
+            assert delivered.speed == pytest.approx(speed, rel=1e-3)
+            assert delivered.step_frequency == pytest.approx(step_frequency, rel=1e-3)
+            assert delivered.slide_mean < 5.0
+            assert delivered.slide_peak < 10.0
+            assert delivered.sole_lowest > -3.0
+            assert delivered.knee_least > 0.0
+
+
+@needs_captures
+def test_a_marker_actor_takes_what_the_markers_do_not_hold_from_the_model_and_says_so(tmp_path):
+    pytest.importorskip("ezc3d")
+    folder = described(tmp_path / "in", sex="female", height=1.755, complete=True)
+    for name in ("2014019_C4_05", "2014019_C5_03"):
+        shutil.copyfile(MOCAP / "c3d" / "schreiber-moissenet" / f"{name}.c3d", folder / f"{name}.c3d")
+    actor = import_folder(folder, "lea", tmp_path / "library")
+    gaits = [gait for cycle in actor.cycles for gait in cycle.captured]
+    assert [gait.speed for gait in gaits] == pytest.approx([1.277, 1.742], rel=0.02)  # MANIFEST.csv
+    assert any(note.startswith("head: not in the captures") for note in actor.notes)
+
+
+@needs_captures
+def test_walks_to_a_metronome_are_grouped_by_its_beat(tmp_path):
+    """Two beats of two speeds each, made by playing CMU walks a little faster or slower."""
+    folder = described(tmp_path / "in", height=1.70)
+    text = (CMU / "cmu_16_15.bvh").read_text()
+    head, motion = text.split("MOTION")
+    lines = motion.strip().splitlines()
+    rows = np.array([[float(value) for value in line.split()] for line in lines[2:]])
+    for index, (tempo, stride) in enumerate(((0.9, 0.85), (0.9, 1.2), (1.1, 0.85), (1.1, 1.2))):
+        moved = rows.copy()
+        moved[:, [0, 2]] *= stride
+        body = "\n".join(" ".join(f"{value:.5f}" for value in row) for row in moved)
+        frame = f"Frames: {len(moved)}\nFrame Time: {1 / (120 * tempo):.8f}\n"
+        (folder / f"w{index}.bvh").write_text(f"{head}MOTION\n{frame}{body}\n")
+    actor = import_folder(folder, "grid", tmp_path / "library")
+    assert not actor.follows
+    assert [frequency for frequency, _ in actor.rows] == pytest.approx([0.9 * 102.5, 1.1 * 102.5], rel=0.02)
+    assert [len(row) for _, row in actor.rows] == [2, 2]
+
+
+def rewritten(folder: Path, change) -> Path:
+    """CMU 07_03 with its header lines and frames (rows of numbers) changed."""
+    captured(folder)
+    lines = (CMU / "cmu_07_03.bvh").read_text().splitlines()
+    start = next(i for i, line in enumerate(lines) if line.startswith("Frames:"))
+    head, rows = change(lines[:start], [line.split() for line in lines[start + 2 :] if line.strip()])
+    body = [" ".join(row) for row in rows]
+    (folder / "walk.bvh").write_text("\n".join([*head, f"Frames: {len(rows)}", lines[start + 1], *body]) + "\n")
+    return folder
+
+
+def still(head, rows):
+    return head, [rows[0]] * 300
+
+
+def one_frame(head, rows):
+    return head, rows[:1]
+
+
+def not_a_number(head, rows):
+    rows[50][4] = "nan"
+    return head, rows
+
+
+def ten_minutes(head, rows):
+    return head, rows * (72_000 // len(rows) + 1)
+
+
+def a_step(head, rows):
+    return head, rows[:40]
+
+
+def in_kilometres(head, rows):
+    changed = []
+    for line in head:
+        words = line.split()
+        if words and words[0] == "OFFSET":
+            line = "OFFSET " + " ".join(f"{float(word) * 1e-5:.9f}" for word in words[1:])
+        changed.append(line)
+    return changed, [[f"{float(v) * 1e-5:.9f}" for v in row[:3]] + row[3:] for row in rows]
+
+
+@needs_captures
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (still, "whole stride"),
+        (one_frame, "one frame|1 frame"),
+        (not_a_number, "number|nan"),
+        (ten_minutes, "cut it to one straight walk"),
+        (a_step, "whole stride"),
+        (in_kilometres, "no leg"),
+    ],
+    ids=lambda value: value.__name__ if callable(value) else "",
+)
+def test_a_clip_that_makes_no_walk_is_one_sentence_and_leaves_nothing(tmp_path, change, reason):
+    refused(rewritten(tmp_path / "in", change), tmp_path / "library", "walk.bvh", reason)
+
+
+def test_missing_feet_are_named(tmp_path):
+    """A skeleton whose legs end below the knee."""
+    turns = "CHANNELS 3 Zrotation Yrotation Xrotation"
+    legs = "".join(
+        f" JOINT {side}UpLeg {{ OFFSET {x} -5 0 {turns}"
+        f" JOINT {side}Leg {{ OFFSET 0 -42 0 {turns} End Site {{ OFFSET 0 -41 0 }} }} }}"
+        for side, x in (("Left", 9), ("Right", -9))
+    )
+    places = "CHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation"
+    head = f"HIERARCHY ROOT Hips {{ OFFSET 0 0 0 {places}{legs} }}"
+    head = re.sub(r" (?=ROOT|JOINT|OFFSET|CHANNELS|End|[{}])", "\n", head)
+    rows = [f"0 95 {frame} " + " ".join(["0"] * 15) for frame in range(200)]
+    folder = described(tmp_path / "in")
+    (folder / "walk.bvh").write_text("\n".join([head, "MOTION", "Frames: 200", "Frame Time: .01", *rows]) + "\n")
+    refused(folder, tmp_path / "library", "walk.bvh", "Foot|leg")
+
+
+@needs_captures
+def test_a_truncated_file_is_one_sentence(tmp_path):
+    folder = captured(tmp_path / "in")
+    text = (CMU / "cmu_07_03.bvh").read_text()
+    (folder / "walk.bvh").write_text(text[: len(text) // 2])
+    refused(folder, tmp_path / "library", "walk.bvh", ".")
+
+
+@needs_captures
+def test_a_walk_that_turns_is_refused(tmp_path):
+    folder = described(tmp_path / "in")
+    eight = next((MOCAP / "bvh" / "pymo").glob("AV_8Walk*.bvh"))
+    shutil.copyfile(eight, folder / "eight.bvh")
+    refused(folder, tmp_path / "library", "eight.bvh", "turns by")
+
+
+@needs_captures
+def test_two_peoples_clips_in_one_folder_are_told_apart(tmp_path):
+    refused(captured(tmp_path / "in", "07_01", "08_01"), tmp_path / "library", "cmu_08_01.bvh", "two people")
+
+
+@needs_captures
+def test_a_height_that_does_not_fit_the_legs_is_refused(tmp_path):
+    refused(captured(tmp_path / "in", "07_01", height=1.15), tmp_path / "library", "actor.yaml", "no leg")
+
+
+@needs_captures
+def test_a_folder_without_clips_and_a_folder_without_yaml_are_refused(tmp_path):
+    refused(described(tmp_path / "in"), tmp_path / "library", "in", "no motion file")
+    folder = captured(tmp_path / "other", "07_01")
+    (folder / "actor.yaml").unlink()
+    refused(folder, tmp_path / "library", "actor.yaml", "missing")
+
+
+def refused(folder: Path, library: Path, names: str, reason: str) -> None:
+    with pytest.raises(MotionFileError, match=reason) as error:
+        import_folder(folder, "nobody", library)
+    assert names in str(error.value)
+    assert "\n" not in str(error.value)
+    assert not library.exists() or not list(library.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"sex": "other"}, "neither female nor male"),
+        ({"height": 172}, "1 to 2.3 m"),
+        ({"height": True}, "1 to 2.3 m"),
+        ({"weight": None}, "weight is missing"),
+        ({"age": "old"}, "5 to 110 years"),
+        ({"licence": ""}, "licence is empty"),
+        ({"complete": "maybe"}, "neither true nor false"),
+        ({"hight": 1.7}, "hight is no setting"),
+    ],
+)
+def test_a_mistake_in_actor_yaml_is_one_sentence(tmp_path, changes, reason):
+    with pytest.raises(ImportingError, match=reason):
+        read_description(described(tmp_path / "in", **changes))
+
+
+@needs_captures
+@pytest.mark.slow
+def test_twenty_five_clips_of_ten_seconds_take_at_most_five_seconds(tmp_path):
+    folder = described(tmp_path / "in", height=1.70)
+    head, motion = (CMU / "cmu_16_15.bvh").read_text().split("MOTION")
+    lines = motion.strip().splitlines()
+    rows = np.array([[float(value) for value in line.split()] for line in lines[2:]])
+    walk = read_walk(CMU / "cmu_16_15.bvh")
+    first, last = walk.frames
+    travel = (rows[last, :3] - rows[first, :3]) * (1.0, 0.0, 1.0)
+    strides = [rows[first:last].copy() for _ in range(1200 // (last - first) + 1)]
+    for index, stride in enumerate(strides):
+        stride[:, :3] += index * travel
+    body = "\n".join(" ".join(f"{value:.4f}" for value in row) for row in np.concatenate(strides)[:1200])
+    for index in range(25):
+        (folder / f"w{index}.bvh").write_text(f"{head}MOTION\nFrames: 1200\nFrame Time: .0083333\n{body}\n")
+    began = time.perf_counter()
+    import_folder(folder, "many", tmp_path / "library", complete=True)
+    assert time.perf_counter() - began < 5.0
+
+
+def test_an_import_never_writes_over_an_actor_unless_told(tmp_path):
+    from stimuli.actor_library import ActorError, check_name
+
+    for name, reason in (("F1", "default actor"), ("../x", "no name"), ("a b", "no name")):
+        with pytest.raises(ActorError, match=reason):
+            check_name(name, tmp_path)
+    (tmp_path / "anna.npz").write_bytes(b"x")
+    assert imported_names(tmp_path) == ("anna",)
+    with pytest.raises(ActorError, match="already"):
+        check_name("anna", tmp_path)
+    check_name("anna", tmp_path, replace=True)
