@@ -66,3 +66,42 @@ def t_sentence(row: Mapping[str, Any]) -> str:
 def effect_name(effect: str) -> str:
     """'actor:speed' as 'actor × speed'."""
     return effect.replace(":", " × ")
+
+
+def equivalence_sentence(row: Mapping[str, Any]) -> str:
+    """'0.8 − 1.0: −0.00002, 90 % limits [−0.00006, 0.00002], TOST t(20) = 12.4, p < .001'."""
+    where = f"{row['by']} {row['level']}, " if row.get("by") else ""
+    if not math.isfinite(row["p"]):
+        return f"{where}{row['a']} {MINUS} {row['b']}: not testable: no variance"
+    t = min(row["t_lower"], -row["t_upper"])
+    bound = figures(row["upper_bound"])
+    verdict = f"equivalent within ±{bound}" if row["equivalent"] else f"not shown to be equivalent within ±{bound}"
+    return (
+        f"{where}{row['a']} {MINUS} {row['b']}: {figures(row['estimate'])}, 90 % limits [{figures(row['ci_low'])}, "
+        f"{figures(row['ci_high'])}], TOST t({degrees(row['df'])}) = {number(t)}, {p_value(row['p'])}, {verdict}"
+    )
+
+
+def regression_sentence(fit: Mapping[str, float]) -> str:
+    """'R² = .81, adjusted R² = .76, F(3, 12) = 16.9, p < .001' from `regression(...).attrs["fit"]`."""
+    return (
+        f"R² = {share(fit['r2'])}, adjusted R² = {share(fit['r2_adjusted'])}, "
+        f"F({fit['df1']}, {fit['df2']}) = {number(fit['F'])}, {p_value(fit['p'])}"
+    )
+
+
+def coefficient_sentence(row: Mapping[str, Any], df: float) -> str:
+    """'height: b = 0.00431, β = 0.62, t(12) = 3.10, p = .009' from a row of `regression`."""
+    return (
+        f"{row['term']}: b = {figures(row['estimate'])}, β = {number(row['beta'])}, "
+        f"t({degrees(df)}) = {number(row['t'])}, {p_value(row['p'])}"
+    )
+
+
+def mixed_sentence(row: Mapping[str, Any]) -> str:
+    """'F(2, 484) = 3.10, p = .046', 'b = ..., t(...)' or 'SD = ... (31 % of the variance)' from `mixed_model`."""
+    if row["part"] == "deviation":
+        return f"SD = {figures(row['estimate'])} ({number(100 * row['share'], 0)} % of the variance)"
+    if row["part"] == "effect":
+        return f"F({degrees(row['df1'])}, {degrees(row['df2'])}) = {number(row['statistic'])}, {p_value(row['p'])}"
+    return f"b = {figures(row['estimate'])}, t({degrees(row['df2'])}) = {number(row['statistic'])}, {p_value(row['p'])}"

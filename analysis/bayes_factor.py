@@ -1,4 +1,7 @@
-"""Jeffreys-Zellner-Siow Bayes factors for t tests (Rouder, Speckman, Sun, Morey & Iverson 2009)."""
+"""Jeffreys-Zellner-Siow Bayes factors for t tests (Rouder, Speckman, Sun, Morey & Iverson 2009).
+
+pingouin's agrees to 1e-11 (a test compares them); importing it would cost every planned analysis about 2 s.
+"""
 
 from __future__ import annotations
 

@@ -2,48 +2,27 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from io import StringIO
 from typing import Any
 
-import pandas as pd
-
-from analysis.columns import label, level_names
+from analysis.columns import label, level_names, numeric_label
 from analysis.errors import AnalysisError, listed
-
-
-@dataclass(frozen=True)
-class TTestPlan:
-    """A one-sample t test in each level of a factor, against a value of its own."""
-
-    each: str
-    against: Mapping[str, float]
-    label: str
-
-
-@dataclass(frozen=True)
-class FigurePlan:
-    """kind: means or interaction; reference: label of the t tests whose values are drawn too."""
-
-    kind: str
-    x: str
-    lines: str | None = None
-    reference: str | None = None
-
-
-@dataclass(frozen=True)
-class Exclusion:
-    """Trials left out, by a condition on one column, and why."""
-
-    where: str
-    reason: str
+from analysis.plan_parts import (
+    EquivalencePlan,
+    Exclusion,
+    FigurePlan,
+    MixedModelPlan,
+    RankTransformPlan,
+    RegressionPlan,
+    TTestPlan,
+)
 
 
 @dataclass(frozen=True)
 class AnalysisPlan:
-    """What is computed, named in advance."""
+    """What is computed of one measure, named in advance."""
 
     study: str
     title: str
@@ -66,6 +45,13 @@ class AnalysisPlan:
     repetitions: int = 1
     questions: tuple[str, ...] = field(default=())
     start: str | None = None  # the factor that sets where an adjustment starts
+    actor: str = ""  # who walks: a name, or $factor
+    heights: Mapping[str, float] | None = None  # of every actor, m
+    equivalence: tuple[EquivalencePlan, ...] = field(default=())
+    regression: RegressionPlan | None = None
+    rank_transform: RankTransformPlan | None = None
+    mixed_model: MixedModelPlan | None = None
+    also: tuple[AnalysisPlan, ...] = field(default=())  # of further measures
 
 
 def read_plan(study_text: str, where: str) -> AnalysisPlan:
@@ -87,14 +73,27 @@ def plan_of(study: Mapping[str, Any], where: str = "study file") -> AnalysisPlan
     analysis = study.get("analysis")
     if not isinstance(analysis, Mapping):
         raise AnalysisError(f"{where}: the study has no `analysis:` section, so there is no analysis to run.")
+    shared = {"exclusions": analysis.get("exclusions") or ()}
+    also = tuple(_one_plan(study, {**further, **shared}, (), where) for further in analysis.get("also") or ())
+    plan = _one_plan(study, analysis, also, where)
+    names = [plan.measure, *(further.measure for further in also)]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise AnalysisError(f"{where}: {listed(twice)} is analysed twice; put all its tests into one analysis.")
+    return plan
+
+
+def _one_plan(
+    study: Mapping[str, Any], analysis: Mapping[str, Any], also: tuple[AnalysisPlan, ...], where: str
+) -> AnalysisPlan:
     if not analysis.get("measure"):
         raise AnalysisError(f"{where}: analysis.measure must name the column to analyse, as walk_ratio.")
     participants = study.get("participants") or {}
-    between = participants.get("between") or {}
-    factors = study.get("factors") or {}
+    between, factors = participants.get("between") or {}, study.get("factors") or {}
     anova = analysis.get("anova") or {}
     post_hoc = analysis.get("post_hoc") if "post_hoc" in analysis else {}
     questions = _questions(participants.get("questions"))
+    heights = analysis.get("heights")
     plan = AnalysisPlan(
         study=str(study.get("study", "")),
         title=str(study.get("title", study.get("study", "Study"))),
@@ -108,16 +107,12 @@ def plan_of(study: Mapping[str, Any], where: str = "study file") -> AnalysisPlan
         adjust=None if post_hoc is None else str(post_hoc.get("adjust", "tukey")),
         model=str((post_hoc or {}).get("model", "multivariate")),
         t_tests=tuple(
-            TTestPlan(
-                str(test["each"]),
-                {label(level): float(value) for level, value in test["against"].items()},
-                str(test.get("label", "reference value")),
-            )
+            TTestPlan(str(test["each"]), _by_level(test["against"]), str(test.get("label", "reference value")))
             for test in analysis.get("t_tests") or ()
         ),
         normality=analysis.get("normality", "shapiro_wilk") is not None,
         figures=tuple(
-            FigurePlan(str(f["kind"]), str(f["x"]), f.get("lines"), f.get("reference"))
+            FigurePlan(str(f["kind"]), f.get("x"), f.get("lines"), f.get("reference"))
             for f in analysis.get("figures") or ()
         ),
         exclusions=tuple(Exclusion(str(e["where"]), str(e["reason"])) for e in analysis.get("exclusions") or ()),
@@ -127,16 +122,60 @@ def plan_of(study: Mapping[str, Any], where: str = "study file") -> AnalysisPlan
         repetitions=int(study.get("repetitions", 1)),
         questions=tuple(questions),
         start=_start_factor(study, factors),
+        actor=str((study.get("stimulus") or {}).get("actor", "")),
+        heights=None if heights is None else _by_level(heights),
+        equivalence=tuple(
+            EquivalencePlan(str(e["factor"]), float(e["bound"]), e.get("by")) for e in analysis.get("equivalence") or ()
+        ),
+        regression=_regression(analysis.get("regression")),
+        rank_transform=_rank_transform(analysis.get("aligned_rank_transform")),
+        mixed_model=_mixed_model(analysis.get("mixed_model")),
+        also=also,
     )
-    used = {*plan.within, *plan.between, *(t.each for t in plan.t_tests), *(f.x for f in plan.figures)}
-    unknown = sorted(used - set(plan.levels))
+    unknown = sorted({name for name in _factors_named(plan) if name is not None} - set(plan.levels))
     if unknown:
         raise AnalysisError(
-            f"{where}: the planned analysis names {listed(map(repr, unknown))}, which is no factor of "
-            f"the study; "
+            f"{where}: the planned analysis names {listed(map(repr, unknown))}, which is no factor of the study; "
             f"its factors are {listed(plan.levels)}."
         )
     return plan
+
+
+def _factors_named(plan: AnalysisPlan) -> Iterator[str | None]:
+    yield from (*plan.within, *plan.between, *(test.each for test in plan.t_tests))
+    for figure in plan.figures:
+        yield from (figure.x, figure.lines)
+    for same in plan.equivalence:
+        yield from (same.factor, same.by)
+    if plan.regression is not None:
+        yield plan.regression.of
+    if plan.rank_transform is not None:
+        yield from (*plan.rank_transform.within, *plan.rank_transform.between)
+    if plan.mixed_model is not None:
+        yield from (plan.mixed_model.stimulus, *plan.mixed_model.factors)
+
+
+def _by_level(values: Mapping[Any, Any]) -> dict[str, float]:
+    """Values by the text of their level, as a study file maps them."""
+    return {label(level): float(value) for level, value in values.items()}
+
+
+def _regression(part: Mapping[str, Any] | None) -> RegressionPlan | None:
+    if not part:
+        return None
+    on = {
+        str(name): {numeric_label(level): float(v) for level, v in values.items()}
+        for name, values in part["on"].items()
+    }
+    return RegressionPlan(str(part["of"]), on)
+
+
+def _rank_transform(part: Mapping[str, Any] | None) -> RankTransformPlan | None:
+    return RankTransformPlan(tuple(part.get("within") or ()), tuple(part.get("between") or ())) if part else None
+
+
+def _mixed_model(part: Mapping[str, Any] | None) -> MixedModelPlan | None:
+    return MixedModelPlan(str(part["stimulus"]), tuple(part.get("factors") or ())) if part else None
 
 
 def _start_factor(study: Mapping[str, Any], factors: Mapping[str, Any]) -> str | None:
@@ -149,38 +188,3 @@ def _questions(questions: Any) -> dict[str, str]:
     if isinstance(questions, Mapping):
         return {str(name): str((q or {}).get("kind", "")) for name, q in questions.items()}
     return {str(q["id"]): str(q.get("kind", "")) for q in questions or () if isinstance(q, Mapping) and "id" in q}
-
-
-_CONDITION = re.compile(r"\s*(\w+)\s*(<=|>=|==|!=|<|>)\s*(.+?)\s*")
-_COMPARE: dict[str, Callable[[Any, Any], Any]] = {
-    "<": lambda a, b: a < b, ">": lambda a, b: a > b, "<=": lambda a, b: a <= b,
-    ">=": lambda a, b: a >= b, "==": lambda a, b: a == b, "!=": lambda a, b: a != b,
-}  # fmt: skip
-
-
-def matching(trials: pd.DataFrame, where: str) -> pd.Series:
-    """Which trials meet a condition such as `late_frames > 5 and response_time < 0.2`.
-
-    A condition compares one column with a number or a word; several are joined by `and`. A missing
-    value meets no condition.
-    """
-    chosen = pd.Series(True, index=trials.index)
-    for part in where.split(" and "):
-        match = _CONDITION.fullmatch(part)
-        if match is None or match[1] not in trials.columns:
-            raise AnalysisError(
-                f"The exclusion {where!r} cannot be read; write a column, a comparison and a value, "
-                f"as `late_frames > 5`. The columns are {listed(map(str, trials.columns), 40)}."
-            )
-        column, value = trials[match[1]], match[3].strip("'\"")
-        if pd.api.types.is_numeric_dtype(column):
-            try:
-                number = float(value)
-            except ValueError:
-                raise AnalysisError(f"The exclusion {where!r}: {value!r} is not a number.") from None
-            chosen &= _COMPARE[match[2]](column, number) & column.notna()
-        else:
-            if match[2] not in ("==", "!="):
-                raise AnalysisError(f"The exclusion {where!r}: {match[1]} holds words; use == or !=.")
-            chosen &= _COMPARE[match[2]](column.map(label), value) & column.notna()
-    return chosen

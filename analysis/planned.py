@@ -8,15 +8,20 @@ from pathlib import Path
 import pandas as pd
 
 from analysis.apa import anova_sentence
+from analysis.check_plots import check_plots, check_quantiles, quantiles_table
+from analysis.computing import compute
+from analysis.drawing import DrawnFigure
 from analysis.errors import AnalysisError
-from analysis.figures import DrawnFigure, draw
+from analysis.figure_checks import session_course
+from analysis.figures import draw
+from analysis.headlines import headlines
 from analysis.journal import read_study
 from analysis.latex import latex_tables
 from analysis.plan import read_plan
-from analysis.report import report
-from analysis.results import PlannedResults, compute, headlines
+from analysis.report import Drawn, report
+from analysis.results import PlannedResults
 from analysis.trials import trials_table
-from analysis.writing import write_bytes, write_table
+from analysis.writing import table_bytes, write_bytes
 
 
 @dataclass(frozen=True)
@@ -39,10 +44,10 @@ def analyse(study_folder: Path, out: Path, unfinished: bool = False) -> Analysis
 
     study_folder: DATA/<study>, with one journal a run under sourcedata; unfinished: include runs that
     were not finished. Writes trials.csv, cell_means.csv, descriptives.csv, anova.csv, posthoc.csv,
-    ttests.csv, normality.csv, assumptions.csv, tables.tex, the planned figures (PNG and SVG) and
-    report.html. What cannot be
-    computed (too few participants, say) is a warning; the tables of what was recorded are still
-    written. The same journals give the same bytes. Raises AnalysisError for what a person must put right.
+    ttests.csv, normality.csv, assumptions.csv, qq.csv, a table for each further planned test, tables.tex,
+    the planned figures (PNG and SVG) and report.html; further measures get a folder each. What cannot be
+    computed (too few participants, say) is a warning; the tables of what was recorded are still written. The
+    same journals give the same bytes. Raises AnalysisError for what a person must put right.
     """
     study_folder, out = Path(study_folder), Path(out)
     recorded = read_study(study_folder, unfinished)
@@ -54,35 +59,50 @@ def analyse(study_folder: Path, out: Path, unfinished: bool = False) -> Analysis
     first = recorded.runs[0]
     plan = read_plan(str(first.header.get("study_text", "")), first.name)
     results = compute(recorded, plan, trials_table(recorded, plan))
-    drawn, complaints = _figures(results)
-    results = replace(results, warnings=(*results.warnings, *complaints))
-    tables = _tables(results)
-    names = [
-        *tables,
-        *(f"{figure.name}.{kind}" for figure in drawn for kind in ("png", "svg")),
-        "report.html",
-    ]
-    names.insert(len(tables), "tables.tex")
-    paths = [write_table(out / name, table) for name, table in tables.items()]
-    paths.append(write_bytes(out / "tables.tex", latex_tables(results).encode("utf-8")))
-    for figure in drawn:
-        paths.append(write_bytes(out / f"{figure.name}.png", figure.png))
-        paths.append(write_bytes(out / f"{figure.name}.svg", figure.svg))
-    paths.append(write_bytes(out / "report.html", report(results, drawn, names).encode("utf-8")))
+    files: dict[str, bytes] = {"trials.csv": table_bytes(_trials(results))}
+    drawn: dict[str, Drawn] = {}
+    results = _of_one_measure(results, "", files, drawn)
+    also = [_of_one_measure(other, f"{other.plan.measure}/", files, drawn) for other in results.also]
+    results = replace(results, also=tuple(also))
+    files["report.html"] = report(results, drawn, [*files, "report.html"]).encode("utf-8")
+    paths = [write_bytes(out / name, content) for name, content in files.items()]
     return AnalysisOutcome(
         tuple(paths),
-        (*results.warnings, *(f"{who}: {why}; left out." for who, why in recorded.left_out)),
+        (
+            *results.warnings,
+            *(w for other in also for w in other.warnings),
+            *(f"{who}: {why}; left out." for who, why in recorded.left_out),
+        ),
         tuple(headlines(results)),
         len(recorded.runs),
         results.simulated > 0,
     )
 
 
+def _of_one_measure(
+    results: PlannedResults, folder: str, files: dict[str, bytes], drawn: dict[str, Drawn]
+) -> PlannedResults:
+    """Adds the files and pictures of one measure; returns the results with what could not be drawn as a warning."""
+    figures, complaints = _figures(results)
+    points = check_quantiles(results)
+    drawn[results.plan.measure] = Drawn(figures, check_plots(points, results.plan.label))
+    tables = {**_tables(results), "qq.csv": quantiles_table(points)}
+    if results.means is not None and any(figure.kind == "order" for figure in results.plan.figures):
+        tables["order.csv"] = session_course(results.means, results.used)
+    files |= {f"{folder}{name}": table_bytes(table) for name, table in tables.items()}
+    files[f"{folder}tables.tex"] = latex_tables(results).encode("utf-8")
+    for figure in figures:
+        files |= {f"{folder}{figure.name}.png": figure.png, f"{folder}{figure.name}.svg": figure.svg}
+    return replace(results, warnings=(*results.warnings, *complaints))
+
+
+def _trials(results: PlannedResults) -> pd.DataFrame:
+    return results.trials if results.plan.exclusions else results.trials.drop(columns="excluded")
+
+
 def _tables(results: PlannedResults) -> dict[str, pd.DataFrame]:
     anova = results.anova.assign(sentence=[anova_sentence(row) for row in results.anova.to_dict("records")])
-    trials = results.trials if results.plan.exclusions else results.trials.drop(columns="excluded")
-    return {
-        "trials.csv": trials,
+    tables = {
         "cell_means.csv": results.cells,
         "descriptives.csv": results.descriptives,
         "anova.csv": anova,
@@ -91,6 +111,12 @@ def _tables(results: PlannedResults) -> dict[str, pd.DataFrame]:
         "normality.csv": results.normality,
         "assumptions.csv": results.assumptions,
     }
+    second = {"regression": "regression_cases.csv", "aligned_rank_transform": "aligned_rank_contrasts.csv"}
+    for test in results.further:
+        tables[f"{test.kind}.csv"] = test.table
+        if test.kind in second:
+            tables[second[test.kind]] = test.more
+    return tables
 
 
 def _figures(results: PlannedResults) -> tuple[list[DrawnFigure], list[str]]:
@@ -100,7 +126,7 @@ def _figures(results: PlannedResults) -> tuple[list[DrawnFigure], list[str]]:
         return drawn, complaints
     for figure in results.plan.figures:
         try:
-            drawn.append(draw(figure, results.means, results.plan))
+            drawn.append(draw(figure, results.means, results.plan, results.used))
         except AnalysisError as error:
             complaints.append(f"A figure was not drawn: {error}")
     return drawn, complaints

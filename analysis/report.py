@@ -2,30 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
 from analysis import apa, report_text
-from analysis.figures import DrawnFigure
+from analysis.drawing import DrawnFigure
+from analysis.headlines import headlines
 from analysis.markup import Cell, Markup, bullets, element, image, join, table, text
 from analysis.report_cells import str_right
-from analysis.report_sections import (
-    anova_section,
-    descriptives_section,
-    normality_section,
-    posthoc_section,
-    t_tests_section,
-)
+from analysis.report_descriptives import descriptives_section, normality_section
+from analysis.report_further import further_sections
+from analysis.report_sections import anova_section, posthoc_section, t_tests_section
 from analysis.report_style import STYLE
-from analysis.results import PlannedResults, headlines
+from analysis.results import PlannedResults
 from analysis.trials import exclusion_counts
 
-PACKAGES = ("numpy", "scipy", "pandas", "matplotlib")
+PACKAGES = ("numpy", "scipy", "pandas", "statsmodels", "matplotlib")
 
 
-def report(results: PlannedResults, figures: Sequence[DrawnFigure], files: Sequence[str]) -> str:
-    """The page as HTML text. files: names of the tables written beside it."""
+@dataclass(frozen=True)
+class Drawn:
+    """The pictures of one measure: the planned figures, and the Q-Q plots by test."""
+
+    figures: Sequence[DrawnFigure]
+    checks: Mapping[str, DrawnFigure]
+
+
+def report(results: PlannedResults, drawn: Mapping[str, Drawn], files: Sequence[str]) -> str:
+    """The page as HTML text. drawn: by measure; files: names of the tables written beside it."""
     plan = results.plan
+    further = [part for one in results.also for part in (_further_title(one), _warnings(one), *_tests(one, drawn))]
     body = [
         element("h1", plan.title),
         element("p", "Report of the planned analysis of the study ", element("code", plan.study), class_="kind"),
@@ -37,12 +44,8 @@ def report(results: PlannedResults, figures: Sequence[DrawnFigure], files: Seque
         element("h2", "Method"),
         element("p", report_text.methods_paragraph(results)),
         element("p", plan.about, class_="note") if plan.about else "",
-        anova_section(results),
-        _figures(figures),
-        t_tests_section(results),
-        posthoc_section(results),
-        normality_section(results),
-        descriptives_section(results),
+        *_tests(results, drawn),
+        *further,
         _provenance(results, files),
     ]
     head = [
@@ -53,6 +56,29 @@ def report(results: PlannedResults, figures: Sequence[DrawnFigure], files: Seque
     ]
     page = join([element("head", join(head)), element("body", element("main", join(filter(None, body))))])
     return f'<!DOCTYPE html>\n<html lang="en">\n{page}\n</html>\n'
+
+
+def _tests(results: PlannedResults, drawn: Mapping[str, Drawn]) -> list[Markup]:
+    """Every section of one measure."""
+    pictures = drawn[results.plan.measure]
+    return [
+        anova_section(results, pictures.checks.get("anova")),
+        _figures(pictures.figures),
+        t_tests_section(results, pictures.checks),
+        posthoc_section(results),
+        further_sections(results, pictures.checks),
+        normality_section(results),
+        descriptives_section(results),
+    ]
+
+
+def _further_title(results: PlannedResults) -> Markup:
+    return join(
+        [
+            element("h1", f"Also: {results.plan.label}", class_="measure"),
+            element("p", report_text.methods_paragraph(results)),
+        ]
+    )
 
 
 def _simulated(results: PlannedResults) -> Markup:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from analysis import apa
-from analysis.markup import Cell
+from analysis.drawing import DrawnFigure
+from analysis.markup import Cell, Markup, element, image
 from analysis.results import PlannedResults, unit_decimals
 
 
@@ -43,3 +44,12 @@ def bayes_cell(value: float) -> str:
 
 def interval(low: float, high: float, decimals: int) -> str:
     return f"[{apa.number(low, decimals)}, {apa.number(high, decimals)}]"
+
+
+def check_plot(plot: DrawnFigure | None) -> Markup:
+    """A small picture beside a test, folded away until asked for; nothing where there is none."""
+    if plot is None:
+        return Markup("")
+    picture = image(plot.svg, "image/svg+xml", plot.caption)
+    figure = element("figure", picture, element("figcaption", plot.caption), class_="check")
+    return element("details", element("summary", "Q–Q plot"), figure)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import pandas as pd
 
 from analysis import apa, report_text
+from analysis.drawing import DrawnFigure
 from analysis.markup import Cell, Markup, bullets, element, join, table, text
 from analysis.report_cells import (
     bayes_cell,
+    check_plot,
     degrees_cell,
     epsilon_cell,
     interval,
@@ -22,7 +26,7 @@ P_UNCORRECTED = Markup("<i>p</i> uncorrected")
 LONGEST_TABLE = 70  # pairs shown in the page; longer families are in posthoc.csv
 
 
-def anova_section(results: PlannedResults) -> Markup:
+def anova_section(results: PlannedResults, plot: DrawnFigure | None = None) -> Markup:
     data = results.anova
     if not len(data):
         return Markup("")
@@ -64,6 +68,7 @@ def anova_section(results: PlannedResults) -> Markup:
             element("h2", "Analysis of variance"),
             table(shown, columns, list(data["p_gg"] < ALPHA)),
             *(element("p", note, class_="note") for note in notes if note),
+            check_plot(plot),
             element(
                 "details",
                 element("summary", "The same as sentences"),
@@ -75,7 +80,7 @@ def anova_section(results: PlannedResults) -> Markup:
     )
 
 
-def t_tests_section(results: PlannedResults) -> Markup:
+def t_tests_section(results: PlannedResults, plots: Mapping[str, DrawnFigure]) -> Markup:
     data = results.ttests
     if not len(data):
         return Markup("")
@@ -99,7 +104,7 @@ def t_tests_section(results: PlannedResults) -> Markup:
             "bf10": ("BF₁₀", bayes_cell),
             "shapiro_p": (element("span", "Shapiro–Wilk ", element("i", "p")), p_cell),
         }
-        parts.append(table(shown, columns, list(part["p"] < ALPHA)))
+        parts += [table(shown, columns, list(part["p"] < ALPHA)), check_plot(plots.get(f"t {factor}"))]
     measured_in = f" Means and differences in {results.plan.unit}." if results.plan.unit else ""
     parts.append(
         element(
@@ -166,56 +171,3 @@ def _family(effect: str, part: pd.DataFrame, results: PlannedResults) -> Markup:
         return join([title, element("p", words)])
     summary = f"{words} Those that do" + (f" (the {LONGEST_TABLE} clearest):" if len(low) > LONGEST_TABLE else ":")
     return join([title, element("details", element("summary", summary), shown(listed))])
-
-
-def normality_section(results: PlannedResults) -> Markup:
-    data = results.normality
-    if not len(data):
-        return Markup("")
-    unit, _ = unit_cell(results)
-    factors = [name for name in (*results.plan.within, *results.plan.between) if name in data]
-    columns: dict[str, tuple[object, Cell]] = {
-        **{name: (name, text) for name in factors},
-        "n": (element("i", "n"), str_right),
-        "mean": ("mean", unit),
-        "sd": ("SD", unit),
-        "w": (element("i", "W"), lambda w: apa.share(w, 3)),
-        "p": (element("i", "p"), p_cell),
-    }
-    cells = data[data["scope"] == "cell"]
-    return join(
-        [
-            element("h2", "Normality"),
-            element("p", report_text.normality_sentence(results)),
-            element(
-                "details",
-                element("summary", f"Shapiro–Wilk test of each of the {len(cells)} cells"),
-                table(cells, columns, list(cells["p"] < ALPHA)),
-            ),
-        ]
-    )
-
-
-def descriptives_section(results: PlannedResults) -> Markup:
-    data = results.descriptives
-    unit, decimals = unit_cell(results)
-    factors = [name for name in (*results.plan.within, *results.plan.between) if name in data]
-    columns: dict[str, tuple[object, Cell]] = {
-        **{name: (name, text) for name in factors},
-        "n": (element("i", "n"), str_right),
-        "mean": ("mean", unit),
-        "sd": ("SD", unit),
-        "se": ("SE", unit),
-        "limits": ("95 % limits", str_right),
-    }
-    shown = data.assign(limits=[interval(a, b, decimals) for a, b in zip(data["ci_low"], data["ci_high"], strict=True)])
-    return join(
-        [
-            element("h2", "Cell means"),
-            element(
-                "details",
-                element("summary", f"Means of the {len(data)} cells over participants"),
-                table(shown, columns),
-            ),
-        ]
-    )

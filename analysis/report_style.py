@@ -37,7 +37,10 @@ tr.found td { font-weight: 600; }
 tbody tr:hover { background: var(--wash); }
 .note, figcaption { color: var(--soft); font-size: .86rem; max-width: 46rem; }
 figure { margin: 1.4rem 0 1.9rem; }
-figure img { width: 100%; max-width: 41rem; height: auto; display: block; }
+figure img { max-width: min(100%, 41rem); height: auto; display: block; }
+figure.check { margin: .6rem 0 1rem; }
+figure.check img { max-width: 100%; }
+h1.measure { margin-top: 3.4rem; padding-top: 1.6rem; border-top: 3px solid var(--line); }
 figcaption b { color: var(--ink); font-weight: 600; }
 details { margin: .6rem 0; }
 summary { cursor: pointer; color: var(--accent); font-size: .93rem; }

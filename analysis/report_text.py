@@ -49,8 +49,39 @@ def _is_number(value: object) -> bool:
 def methods_paragraph(results: PlannedResults) -> str:
     """As it could stand in a Methods section."""
     plan = results.plan
-    if not (plan.within or plan.between):
-        return "The study file plans no analysis of variance."
+    words = _anova_methods(results) if plan.within or plan.between else []
+    for test in plan.t_tests:
+        words.append(
+            f"For each {test.each}, participants' mean {plan.label.lower()} was compared with the {test.label} in a "
+            "two-sided one-sample t test; these p values are not corrected for their number."
+        )
+    for same in plan.equivalence:
+        inside = f" inside every level of {same.by}" if same.by else ""
+        words.append(
+            f"Whether {plan.label.lower()} is the same at all levels of {same.factor}{inside} was tested with two "
+            f"one-sided tests of every pair, with bounds of ±{same.bound:g}{f' {plan.unit}' if plan.unit else ''}."
+        )
+    if plan.regression is not None:
+        words.append(
+            f"The mean {plan.label.lower()} of every {plan.regression.of} was regressed on "
+            f"{listed(plan.regression.on)} (ordinary least squares)."
+        )
+    if plan.rank_transform is not None:
+        factors = listed((*plan.rank_transform.within, *plan.rank_transform.between))
+        words.append(f"An aligned rank transform with {factors} was run, followed up by ART-C with Holm's correction.")
+    if plan.mixed_model is not None:
+        words.append(
+            f"A linear mixed model of single trials had the fixed factors {listed(plan.mixed_model.factors)} with all "
+            f"interactions and crossed random intercepts of participants and {plan.mixed_model.stimulus} "
+            "(REML, Satterthwaite degrees of freedom)."
+        )
+    if plan.normality and results.means is not None:
+        words.append("Normality was assessed with Shapiro–Wilk tests of the residuals and of every cell.")
+    return " ".join(words) or "The study file plans no test."
+
+
+def _anova_methods(results: PlannedResults) -> list[str]:
+    plan = results.plan
     n = "" if results.means is None else f" (n = {len(results.means.subjects)})"
     design = []
     for kind, names in (("within-participant", plan.within), ("between-participant", plan.between)):
@@ -79,15 +110,7 @@ def methods_paragraph(results: PlannedResults) -> str:
             f"one family "
             "per effect."
         )
-    for test in plan.t_tests:
-        words.append(
-            f"For each {test.each}, participants' mean {plan.label.lower()} was compared with the "
-            f"{test.label} in a "
-            "two-sided one-sample t test; these p values are not corrected for their number."
-        )
-    if plan.normality:
-        words.append("Normality was assessed with Shapiro–Wilk tests of the residuals and of every cell.")
-    return " ".join(words)
+    return words
 
 
 def sphericity_sentence(results: PlannedResults) -> str:

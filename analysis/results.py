@@ -1,34 +1,18 @@
-"""Everything the planned analysis computes, before any of it is written or drawn."""
+"""What the planned analysis of one measure found, before any of it is written or drawn."""
 
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass, field
 
-import numpy as np
 import pandas as pd
 
-from analysis.apa import anova_sentence, effect_name, number, p_value, t_sentence
-from analysis.assumption_checks import assumptions
-from analysis.cells import CellMeans, cell_means
-from analysis.columns import numeric_label
-from analysis.comparisons import pairwise_of
-from analysis.errors import AnalysisError, AnalysisWarning, listed
-from analysis.intervals import ordinary
+from analysis.cells import CellMeans
+from analysis.further_tests import FurtherTest
 from analysis.journal import RecordedStudy
-from analysis.marginal_means import marginal_means
-from analysis.plan import AnalysisPlan, TTestPlan
-from analysis.repeated_measures import COLUMNS as ANOVA_COLUMNS
-from analysis.repeated_measures import anova_of_cells
-from analysis.shapiro_wilk import normality_of_cells
-from analysis.student import COLUMNS as T_COLUMNS
-from analysis.student import t_tests
+from analysis.plan import AnalysisPlan
 
 ALPHA = 0.05
-POSTHOC_COLUMNS = (
-    "effect", "a", "b", "estimate", "se", "df", "t", "p", "p_unadjusted", "ci_low", "ci_high", "d_av", "d_z",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -48,6 +32,8 @@ class PlannedResults:
     assumptions: pd.DataFrame
     warnings: tuple[str, ...]
     notes: tuple[str, ...] = field(default=())
+    further: tuple[FurtherTest, ...] = field(default=())
+    also: tuple[PlannedResults, ...] = field(default=())  # of the plan's further measures
 
     @property
     def simulated(self) -> int:
@@ -55,182 +41,17 @@ class PlannedResults:
         return sum(bool(run.header.get("simulated")) for run in self.recorded.runs)
 
     @property
+    def used(self) -> pd.DataFrame:
+        """The trials that were not excluded."""
+        return self.trials[self.trials["excluded"] == ""] if "excluded" in self.trials else self.trials
+
+    @property
     def significant(self) -> list[str]:
         """Names of the effects with p < .05 (Greenhouse-Geisser)."""
         return list(self.anova.loc[self.anova["p_gg"] < ALPHA, "effect"]) if len(self.anova) else []
-
-
-def compute(recorded: RecordedStudy, plan: AnalysisPlan, trials: pd.DataFrame) -> PlannedResults:
-    """Run the plan; what cannot be run is a warning, so that what was recorded still comes out in tables."""
-    said = list(recorded.warnings)
-    used = trials[trials["excluded"] == ""] if "excluded" in trials else trials
-    used = _known_groups(used, plan, said)
-    cells, descriptives = describe(used, plan)
-    means = _attempt(said, "The analysis of variance cannot be run", _cell_means, used, plan)
-    table = pd.DataFrame(columns=list(ANOVA_COLUMNS))
-    normal = pd.DataFrame(columns=["scope", "n", "mean", "sd", "w", "p"])
-    notes: list[str] = []
-    if means is not None:
-        said += [note for note in means.notes if "left out" in note]
-        table = anova_of_cells(means)
-        notes += [note for note in table.attrs["notes"] if note not in said]
-        if plan.normality:
-            normal = normality_of_cells(means)
-    checks = _attempt(said, "The assumption checks cannot be run", _checks, used, plan) if means is not None else None
-    if checks is None:
-        checks = pd.DataFrame(columns=["check", "where", "statistic", "df1", "df2", "p", "note"])
-    posthoc = _posthoc(means, table, plan, notes)
-    ttests = _t_tests(used, plan, said)
-    if len(table) and any(":" in e for e in table.loc[table["p_gg"] < ALPHA, "effect"]):
-        notes.append(
-            "An interaction is significant: comparisons of a main effect inside it average over the "
-            "other factor; "
-            "read the cells of the interaction as well."
-        )
-    return PlannedResults(
-        plan, recorded, trials, cells, descriptives, means, table, posthoc, ttests, normal, checks,
-        tuple(dict.fromkeys(said)), tuple(dict.fromkeys(notes)),
-    )  # fmt: skip
-
-
-def _attempt(said: list[str], what: str, function, *arguments):  # type: ignore[no-untyped-def]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", AnalysisWarning)
-        try:
-            return function(*arguments)
-        except AnalysisError as error:
-            said.append(f"{what}: {error}")
-            return None
-
-
-def _checks(used: pd.DataFrame, plan: AnalysisPlan) -> pd.DataFrame:
-    return assumptions(
-        used, plan.measure, "participant", plan.within, plan.between,
-        trial="trial", start=plan.start if plan.start in plan.within else None, levels=plan.levels,
-    )  # fmt: skip
-
-
-def _cell_means(used: pd.DataFrame, plan: AnalysisPlan) -> CellMeans:
-    return cell_means(used, plan.measure, "participant", plan.within, plan.between, plan.levels)
-
-
-def _known_groups(used: pd.DataFrame, plan: AnalysisPlan, said: list[str]) -> pd.DataFrame:
-    """Without participants whose answer is no level of a between factor (as 'I prefer not to say')."""
-    for name in plan.between:
-        if name not in used:
-            said.append(f"Nobody answered the question {name!r}, which the analysis needs as a between factor.")
-            return used.iloc[:0]
-        known = used[name].map(lambda value: str(value).strip()).isin(plan.levels[name])
-        if not known.all():
-            odd = used.loc[~known].drop_duplicates("participant")
-            who = [f"{row['participant']} ({row[name]})" for _, row in odd.iterrows()]
-            said.append(
-                f"{len(who)} participant(s) were left out because their answer to {name!r} is not one of "
-                f"{listed(plan.levels[name])}: {listed(who)}."
-            )
-            used = used[known]
-    return used
-
-
-def describe(used: pd.DataFrame, plan: AnalysisPlan) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Mean of each participant and cell; and n, mean, sd, se, 95 % limits of each cell over participants."""
-    factors = [*plan.within, *plan.between]
-    keyed = used.assign(**{f: _categories(used, f, plan.levels[f]) for f in factors if f in used})
-    factors = [f for f in factors if f in keyed]
-    grouped = keyed.groupby(["participant", *factors], observed=True, sort=True)[plan.measure]
-    cells = grouped.agg(trials="count", mean="mean").reset_index()
-    rows = []
-    for names, part in cells.groupby(factors, observed=True, sort=True):
-        values = part["mean"].to_numpy(dtype=float)
-        values = values[~np.isnan(values)]
-        sd = values.std(ddof=1) if len(values) > 1 else math.nan
-        half = float(ordinary(values[:, None])[0]) if len(values) > 1 else math.nan
-        mean = values.mean() if len(values) else math.nan
-        rows.append((*names, len(values), mean, sd, sd / math.sqrt(len(values) or 1), mean - half, mean + half))
-    columns = [*factors, "n", "mean", "sd", "se", "ci_low", "ci_high"]
-    return cells, pd.DataFrame(rows, columns=columns)
-
-
-def _categories(used: pd.DataFrame, factor: str, order: tuple[str, ...]) -> pd.Categorical:
-    place = {numeric_label(level): code for code, level in enumerate(order)}
-    codes = [place.get(numeric_label(value), -1) for value in used[factor]]
-    return pd.Categorical.from_codes(codes, list(order), ordered=True)
-
-
-def _posthoc(means: CellMeans | None, table: pd.DataFrame, plan: AnalysisPlan, notes: list[str]) -> pd.DataFrame:
-    """Comparisons of every effect with p < .05, one family per effect."""
-    empty = pd.DataFrame(columns=list(POSTHOC_COLUMNS))
-    if means is None or plan.adjust is None:
-        return empty
-    parts = []
-    for effect in table.loc[table["p_gg"] < ALPHA, "effect"]:
-        pairs = pairwise_of(marginal_means(means, effect.split(":")), 0, plan.model, plan.adjust)
-        notes += [note for note in pairs.attrs["notes"] if note not in means.notes]
-        parts.append(pairs.assign(effect=effect))
-    return pd.concat(parts, ignore_index=True)[list(POSTHOC_COLUMNS)] if parts else empty
-
-
-def _t_tests(used: pd.DataFrame, plan: AnalysisPlan, said: list[str]) -> pd.DataFrame:
-    parts = []
-    for test in plan.t_tests:
-        table = _attempt(said, f"The t tests against the {test.label} cannot be run", _one_t, used, plan, test)
-        if table is not None:
-            parts.append(table.assign(factor=test.each, reference=test.label))
-    columns = ["factor", "reference", *T_COLUMNS]
-    return pd.concat(parts, ignore_index=True)[columns] if parts else pd.DataFrame(columns=columns)
-
-
-def _one_t(used: pd.DataFrame, plan: AnalysisPlan, test: TTestPlan) -> pd.DataFrame:
-    return t_tests(
-        used, plan.measure, "participant", each=test.each, against=dict(test.against),
-        levels={test.each: plan.levels[test.each]},
-    )  # fmt: skip
 
 
 def unit_decimals(results: PlannedResults) -> int:
     """Decimals that show a hundredth of the standard deviation of the measure."""
     sd = float(results.cells["mean"].std()) if len(results.cells) > 1 else math.nan
     return 2 if not sd > 0 else min(12, max(0, 1 - math.floor(math.log10(sd))))
-
-
-def _direction(results: PlannedResults, effect: str) -> list[str]:
-    """'F1 < M1, F2 < M1 (Tukey).' for a main effect of more than two levels."""
-    pairs = results.posthoc[(results.posthoc["effect"] == effect) & (results.posthoc["p"] < ALPHA)]
-    if ":" in effect:
-        return []
-    if not len(pairs):
-        return [f"No pair of levels of {effect} differs after correction."] if len(results.posthoc) else []
-    words = [f"{r.a} < {r.b}" if r.estimate < 0 else f"{r.b} < {r.a}" for r in pairs.itertuples()]
-    adjust = {"tukey": "Tukey", "bonferroni": "Bonferroni", "holm": "Holm"}.get(
-        str(results.plan.adjust), "no correction"
-    )
-    return [f"{effect.capitalize()}, pairs that differ ({adjust}): {', '.join(words)}."]
-
-
-def headlines(results: PlannedResults) -> list[str]:
-    """What was found, each with its test: the significant effects, then the t tests."""
-    plan, found = results.plan, []
-    if len(results.anova):
-        for row in results.anova.to_dict("records"):
-            if row["p_gg"] < ALPHA:
-                what = "interaction" if ":" in row["effect"] else "effect"
-                found.append(f"{plan.label}: {what} of {effect_name(row['effect'])}, {anova_sentence(row)}.")
-                found += _direction(results, row["effect"])
-        rest = [r for r in results.anova.to_dict("records") if not r["p_gg"] < ALPHA and ":" not in r["effect"]]
-        if rest:
-            tests = "; ".join(f"{r['effect']}, {anova_sentence(r)}" for r in rest)
-            found.append(f"No evidence of an effect of {tests}.")
-        interactions = results.anova["effect"].str.contains(":")
-        if interactions.any() and not any(":" in effect for effect in results.significant):
-            found.append("No interaction was significant.")
-    decimals = unit_decimals(results)
-    for row in results.ttests.to_dict("records"):
-        side = "not shown to differ from" if not row["p"] < ALPHA else "below" if row["estimate"] < 0 else "above"
-        found.append(
-            f"{row['factor'].capitalize()} {row['level']}: mean {number(row['mean'], decimals)}, {side} the "
-            f"{row['reference']} of {number(row['against'], decimals)}, {t_sentence(row)}."
-        )
-    if len(results.normality) and results.normality["p"].iloc[0] < ALPHA:
-        w, p = results.normality["w"].iloc[0], results.normality["p"].iloc[0]
-        found.append(f"The residuals are not normal (Shapiro–Wilk W = {w:.3f}, {p_value(p)}).")
-    return found

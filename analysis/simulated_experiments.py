@@ -12,12 +12,14 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from analysis.cells import CellMeans
 from analysis.errors import AnalysisError
+from analysis.gait_measures import GRAVITY
 from analysis.plan import AnalysisPlan, plan_of
 
-MEASURES = ("walk_ratio", "step_frequency", "step_length")
+MEASURES = ("walk_ratio", "step_frequency", "step_length", "normalised_walk_ratio")
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,7 @@ class ExperimentModel:
     anchoring: float
     lowest: float  # steps/min
     highest: float
+    height: np.ndarray  # (trials,) m, of the actor of every trial; nan where the plan gives none
 
 
 def experiment_model(study: Mapping[str, Any], participants: int | None = None) -> ExperimentModel:
@@ -74,31 +77,54 @@ def experiment_model(study: Mapping[str, Any], participants: int | None = None) 
         float(simulation.get("anchoring", 0.0)),
         float(bounds.get("minimum", 80.0)),
         float(bounds.get("maximum", 120.0)),
+        np.tile([(plan.heights or {}).get(str(actor), np.nan) for actor in actors], plan.repetitions),
     )
 
 
 def cell_means_of(model: ExperimentModel, seed: int, experiments: range) -> np.ndarray:
     """(S, N, c) cell means of the numbered experiments; each depends on the seed and its number alone."""
-    n, trials = len(model.design.subjects), len(model.actor)
+    n = len(model.design.subjects)
     values = np.empty((len(experiments), n, model.cell.shape[1]))
     for place, number in enumerate(experiments):
-        rng = np.random.default_rng([seed, number])
-        own, apart = rng.standard_normal((n, 1)), rng.standard_normal((n, len(model.mean)))
-        z = np.sqrt(model.shared) * own + np.sqrt(1 - model.shared) * apart
-        preferred = np.maximum(model.mean + model.sd * z, model.mean / 4)
-        wanted = preferred[:, model.actor] + model.trial_noise * rng.standard_normal((n, trials))
-        frequency = np.sqrt(60 * model.speed / np.maximum(wanted, 1e-4))
-        frequency += model.anchoring * (model.start - frequency)
-        np.clip(frequency, model.lowest, model.highest, out=frequency)
-        values[place] = _measure(model, frequency) @ model.cell
+        values[place] = _measure(model, np.clip(_wanted(model, seed, number), model.lowest, model.highest)) @ model.cell
     return values
+
+
+def _wanted(model: ExperimentModel, seed: int, number: int) -> np.ndarray:
+    """(N, trials) step frequencies that one experiment's observers would choose if nothing limited them."""
+    n, trials = len(model.design.subjects), len(model.actor)
+    rng = np.random.default_rng([seed, number])
+    own, apart = rng.standard_normal((n, 1)), rng.standard_normal((n, len(model.mean)))
+    z = np.sqrt(model.shared) * own + np.sqrt(1 - model.shared) * apart
+    preferred = np.maximum(model.mean + model.sd * z, model.mean / 4)
+    wanted = preferred[:, model.actor] + model.trial_noise * rng.standard_normal((n, trials))
+    frequency = np.sqrt(60 * model.speed / np.maximum(wanted, 1e-4))
+    return frequency + model.anchoring * (model.start - frequency)
+
+
+def clipped_shares(model: ExperimentModel, seed: int = 1, experiments: int = 20) -> pd.DataFrame:
+    """How often the wanted step frequency lies outside the range of the task, so that the answer is its edge.
+
+    Returns actor (index), speed (m/s) and share of trials, one row per combination.
+    """
+    outside = np.mean([_outside(model, seed, number) for number in range(experiments)], axis=0)
+    table = pd.DataFrame({"actor": model.actor, "speed": model.speed, "share": outside})
+    return table.groupby(["actor", "speed"], as_index=False)["share"].mean()
+
+
+def _outside(model: ExperimentModel, seed: int, number: int) -> np.ndarray:
+    wanted = _wanted(model, seed, number)
+    return np.mean((wanted < model.lowest) | (wanted > model.highest), axis=0)
 
 
 def _measure(model: ExperimentModel, frequency: np.ndarray) -> np.ndarray:
     if model.plan.measure == "step_frequency":
         return frequency
     length = 60 * model.speed / frequency
-    return length if model.plan.measure == "step_length" else length / frequency
+    if model.plan.measure == "step_length":
+        return length
+    ratio = length / frequency
+    return ratio * 60 * np.sqrt(GRAVITY / model.height**3) if model.plan.measure == "normalised_walk_ratio" else ratio
 
 
 def _values(setting: Any, columns: Mapping[str, list[Any]], count: int) -> list[Any]:

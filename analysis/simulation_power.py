@@ -5,7 +5,7 @@ The three conventions of power formulas differ by a factor of five in participan
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -31,12 +31,14 @@ def power_by_simulation(
     alpha: float = 0.05,
     workers: int = 1,
     client: Any = None,
+    progress: Callable[[Iterable[np.ndarray], int], Iterable[np.ndarray]] = lambda parts, _: parts,
 ) -> pd.DataFrame:
     """How often each test of the planned analysis is significant, for the study's simulated observers.
 
     study: the study file as a dict, its path, or its text; participants: instead of the planned number;
     shard: (i, n) does the i-th of n parts, to be joined with `combine_power`; workers: processes;
     client: a dask.distributed Client (or anything with map and gather) to spread the work over.
+    progress: wraps the iterable of parts of the work, given their number.
     Experiment k depends on the seed and k only, so any split gives the same counts.
 
     Returns one row per test with columns test ("anova", Greenhouse-Geisser, or "t"), name (effect, or
@@ -46,7 +48,7 @@ def power_by_simulation(
     part, parts = shard
     if not 1 <= part <= parts:
         raise AnalysisError(f"The shard must be i/n with i from 1 to n, not {part}/{parts}.")
-    model = experiment_model(_as_dict(study), participants)
+    model = experiment_model(as_dict(study), participants)
     first, last = experiments * (part - 1) // parts, experiments * part // parts
     chunks = [range(at, min(at + CHUNK, last)) for at in range(first, last, CHUNK)]
     jobs = [(model, seed, chunk, alpha) for chunk in chunks]
@@ -56,9 +58,9 @@ def power_by_simulation(
         from concurrent.futures import ProcessPoolExecutor
 
         with ProcessPoolExecutor(workers) as pool:
-            counted = list(pool.map(_count, jobs))
+            counted = list(progress(pool.map(_count, jobs), len(jobs)))
     else:
-        counted = [_count(job) for job in jobs]
+        counted = list(progress(map(_count, jobs), len(jobs)))
     names = _tests(model.plan)
     total = np.sum(counted, axis=0) if counted else np.zeros(len(names), dtype=int)
     return _table(pd.DataFrame(names, columns=["test", "name"]).assign(significant=total, experiments=last - first))
@@ -85,7 +87,7 @@ def _table(counts: pd.DataFrame) -> pd.DataFrame:
     return counts.assign(power=share, ci_low=middle - half, ci_high=middle + half)
 
 
-def _as_dict(study: Mapping[str, Any] | str | Path) -> Mapping[str, Any]:
+def as_dict(study: Mapping[str, Any] | str | Path) -> Mapping[str, Any]:
     if isinstance(study, Mapping):
         return study
     from ruamel.yaml import YAML

@@ -2,46 +2,22 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from itertools import combinations
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy import special, stats
 
-from analysis.bayes_factor import jzs
 from analysis.cells import Levels, cell_means
 from analysis.columns import labels, numbers, numeric_label, require
-from analysis.effect_size import hedges_factor, t_noncentrality_limits
 from analysis.errors import AnalysisError, listed
+from analysis.t_statistics import from_moments, independent_tests, one_sample, paired_test
 
 COLUMNS = (
-    "test",
-    "level",
-    "a",
-    "b",
-    "n",
-    "mean",
-    "sd",
-    "against",
-    "estimate",
-    "ci_low",
-    "ci_high",
-    "t",
-    "df",
-    "p",
-    "d",
-    "d_low",
-    "d_high",
-    "g",
-    "bf10",
-    "shapiro_w",
-    "shapiro_p",
-    "rank_statistic",
-    "rank_p",
-)
+    "test", "level", "a", "b", "n", "mean", "sd", "against", "estimate", "ci_low", "ci_high", "t", "df", "p",
+    "d", "d_low", "d_high", "g", "bf10", "shapiro_w", "shapiro_p", "rank_statistic", "rank_p",
+)  # fmt: skip
 
 
 def t_tests(
@@ -85,13 +61,13 @@ def t_tests(
         if against is not None:
             if name in wanted:
                 values = _participant_means(part, dv, subject)
-                rows.append({"level": name, **_one_sample(values, wanted[name])})
+                rows.append({"level": name, **one_sample(values, wanted[name])})
         elif paired is not None:
             means = cell_means(part, dv, subject, within=[paired], levels=_only(levels, paired))
             notes += means.notes
             for i, j in combinations(range(len(means.within[paired])), 2):
                 a, b = means.within[paired][i], means.within[paired][j]
-                rows.append({"level": name, "a": a, "b": b, **_paired(means.values[:, i], means.values[:, j])})
+                rows.append({"level": name, "a": a, "b": b, **paired_test(means.values[:, i], means.values[:, j])})
         else:
             assert independent is not None
             means = cell_means(part, dv, subject, between=[independent], levels=_only(levels, independent))
@@ -99,7 +75,7 @@ def t_tests(
             for i, j in combinations(range(len(means.between[independent])), 2):
                 x, y = (means.values[means.groups[:, 0] == k, 0] for k in (i, j))
                 pair = {"level": name, "a": means.between[independent][i], "b": means.between[independent][j]}
-                rows += [{**pair, **test} for test in _independent(x, y)]
+                rows += [{**pair, **test} for test in independent_tests(x, y)]
     table = pd.DataFrame(rows).reindex(columns=list(COLUMNS))
     for column in ("level", "a", "b"):
         table[column] = [value if isinstance(value, str) else "" for value in table[column]]
@@ -118,7 +94,7 @@ def t_tests_from_summary(summary: pd.DataFrame) -> pd.DataFrame:
     """
     require(summary, ["mean", "sd", "n", "against"])
     rows = [
-        _from_moments("one-sample", row.mean, row.sd, int(row.n), row.against)
+        from_moments("one-sample", row.mean, row.sd, int(row.n), row.against)
         for row in pd.DataFrame({c: numbers(summary, c) for c in ("mean", "sd", "n", "against")}).itertuples(
             index=False
         )
@@ -160,122 +136,3 @@ def _participant_means(data: pd.DataFrame, dv: str, subject: str) -> np.ndarray:
     counts = np.bincount(people.codes[have], minlength=len(people.levels))
     sums = np.bincount(people.codes[have], weights=values[have], minlength=len(people.levels))
     return sums[counts > 0] / counts[counts > 0]
-
-
-def _one_sample(values: np.ndarray, against: float) -> dict[str, Any]:
-    if len(values) < 2:
-        raise AnalysisError(f"A t test needs at least 2 participants; there is {len(values)}.")
-    flat = _flat(values)
-    test = _from_moments("one-sample", values.mean(), 0.0 if flat else values.std(ddof=1), len(values), against)
-    return {**test, **_shapiro(values), **_wilcoxon(values - against)}
-
-
-def _paired(x: np.ndarray, y: np.ndarray) -> dict[str, Any]:
-    difference = x - y
-    flat = float(np.sum((difference - difference.mean()) ** 2)) <= 1e-26 * float(np.sum(x**2) + np.sum(y**2))
-    sd = 0.0 if flat else difference.std(ddof=1)
-    test = _from_moments("paired", difference.mean(), sd, len(difference), 0.0)
-    return {**test, "against": math.nan, **_shapiro(difference), **_wilcoxon(difference)}
-
-
-def _from_moments(test: str, mean: float, sd: float, n: int, against: float) -> dict[str, Any]:
-    estimate, df, root = mean - against, n - 1, math.sqrt(n)
-    row: dict[str, Any] = {
-        "test": test,
-        "n": n,
-        "mean": mean,
-        "sd": sd,
-        "against": against,
-        "estimate": estimate,
-    }
-    if not sd > 0:
-        return row
-    t = estimate / (sd / root)
-    low, high = t_noncentrality_limits(t, df)
-    half = stats.t.ppf(0.975, df) * sd / root
-    return row | {
-        "ci_low": estimate - half,
-        "ci_high": estimate + half,
-        "t": t,
-        "df": float(df),
-        "p": _p(t, df),
-        "d": estimate / sd,
-        "d_low": low / root,
-        "d_high": high / root,
-        "g": hedges_factor(df) * estimate / sd,
-        "bf10": jzs(t, df, n),
-    }
-
-
-def _independent(x: np.ndarray, y: np.ndarray) -> list[dict[str, Any]]:
-    n, m = len(x), len(y)
-    estimate = x.mean() - y.mean()
-    head = {"n": n + m, "mean": np.nan, "estimate": estimate}
-    if n < 2 or m < 2 or (_flat(x) and _flat(y)):
-        return [{"test": "independent", **head}]
-    vx, vy = x.var(ddof=1), y.var(ddof=1)
-    pooled = math.sqrt(((n - 1) * vx + (m - 1) * vy) / (n + m - 2))
-    rank = stats.mannwhitneyu(x, y, use_continuity=True, method="asymptotic")
-    rows = []
-    for test, se, df in (
-        ("independent", pooled * math.sqrt(1 / n + 1 / m), float(n + m - 2)),
-        (
-            "Welch",
-            math.sqrt(vx / n + vy / m),
-            (vx / n + vy / m) ** 2 / ((vx / n) ** 2 / (n - 1) + (vy / m) ** 2 / (m - 1)),
-        ),
-    ):
-        t, half = estimate / se, stats.t.ppf(0.975, df) * se
-        row = {
-            "test": test,
-            **head,
-            "sd": pooled,
-            "ci_low": estimate - half,
-            "ci_high": estimate + half,
-            "t": t,
-            "df": df,
-            "p": _p(t, df),
-            "rank_statistic": rank.statistic,
-            "rank_p": rank.pvalue,
-        }
-        if test == "independent":
-            scale = math.sqrt(1 / n + 1 / m)
-            low, high = t_noncentrality_limits(t, df)
-            row |= {
-                "d": estimate / pooled,
-                "d_low": low * scale,
-                "d_high": high * scale,
-                "g": hedges_factor(df) * estimate / pooled,
-                "bf10": jzs(t, df, n * m / (n + m)),
-            }
-        rows.append(row)
-    return rows
-
-
-def _p(t: float, df: float) -> float:
-    return float(2 * special.stdtr(df, -abs(t)))
-
-
-def _flat(values: Sequence[float] | np.ndarray) -> bool:
-    values = np.asarray(values)
-    return float(np.sum((values - values.mean()) ** 2)) <= 1e-26 * float(np.sum(values**2))
-
-
-def _shapiro(values: np.ndarray) -> dict[str, float]:
-    if len(values) < 3 or _flat(values):
-        return {}
-    w, p = stats.shapiro(values)
-    return {"shapiro_w": float(w), "shapiro_p": float(p)}
-
-
-def _wilcoxon(differences: np.ndarray) -> dict[str, float]:
-    differences = differences[np.round(differences, 12) != 0] if np.any(differences) else differences
-    if not np.any(differences):
-        return {}
-    ranks = stats.rankdata(np.round(np.abs(differences), 12))
-    n, positive = len(ranks), float(np.sum(ranks[differences > 0]))
-    ties = np.unique(ranks, return_counts=True)[1]
-    sigma = math.sqrt(n * (n + 1) * (2 * n + 1) / 24 - np.sum(ties**3 - ties) / 48)
-    z = positive - n * (n + 1) / 4
-    z = (z - math.copysign(0.5, z) if z else 0.0) / sigma
-    return {"rank_statistic": positive, "rank_p": float(min(1.0, 2 * special.ndtr(-abs(z))))}

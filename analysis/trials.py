@@ -6,9 +6,12 @@ from typing import Any
 
 import pandas as pd
 
+from analysis.columns import label
 from analysis.errors import AnalysisError, listed
+from analysis.exclusions import matching
+from analysis.gait_measures import normalised_gait
 from analysis.journal import RecordedRun, RecordedStudy
-from analysis.plan import AnalysisPlan, matching
+from analysis.plan import AnalysisPlan
 
 COUNTS = ("response_time", "key_presses", "reversals", "late_frames")
 
@@ -22,10 +25,13 @@ def trials_table(recorded: RecordedStudy, plan: AnalysisPlan) -> pd.DataFrame:
     if not rows:
         raise AnalysisError("The recorded runs hold no trial (practice does not count).")
     table = pd.DataFrame(rows, columns=_columns(rows, plan, recorded))
-    if plan.measure not in table.columns:
-        raise AnalysisError(
-            f"The planned measure {plan.measure!r} is no column of the trials; they have {listed(table.columns, 40)}."
-        )
+    for one in (plan, *plan.also):
+        _add_derived(table, one)
+        if one.measure not in table.columns:
+            raise AnalysisError(
+                f"The planned measure {one.measure!r} is no column of the trials; "
+                f"they have {listed(table.columns, 40)}."
+            )
     table["excluded"] = ""
     for exclusion in plan.exclusions:
         chosen = matching(table, exclusion.where) & (table["excluded"] == "")
@@ -40,6 +46,28 @@ def _row(run: RecordedRun, trial: dict[str, Any], plan: AnalysisPlan) -> dict[st
     row |= {**trial.get("factors", {}), **trial.get("response", {})}
     row |= {name: trial.get(name) for name in COUNTS}
     return row | {f"measured_{name}": value for name, value in trial.get("measured", {}).items()}
+
+
+def _add_derived(table: pd.DataFrame, plan: AnalysisPlan) -> None:
+    """Adds the planned measure where it follows from what was recorded.
+
+    normalised_walk_ratio: dimensionless (Hof 1996), with the heights in the plan. confusion_rate: 100 (%)
+    where the copy was `chosen` instead of the `original`, 0 where not.
+    """
+    if plan.measure == "normalised_walk_ratio" and {"step_length", "step_frequency"} <= set(table.columns):
+        named = plan.actor[1:] if plan.actor.startswith("$") else None
+        actors = table[named].map(label) if named in table else pd.Series(plan.actor, index=table.index)
+        heights = actors.map(plan.heights or {})
+        if heights.isna().any():
+            missing = sorted(set(actors[heights.isna()]))
+            raise AnalysisError(
+                f"The plan gives no height for {listed(missing)}, which normalised_walk_ratio needs; "
+                "add it under `heights:`, in metres."
+            )
+        table[plan.measure] = normalised_gait(table.assign(_height=heights), "_height")["walk_ratio_n"]
+    elif plan.measure == "confusion_rate" and {"chosen", "original"} <= set(table.columns):
+        wrong = table["chosen"].map(label) != table["original"].map(label)
+        table[plan.measure] = wrong.astype(float) * 100
 
 
 def _columns(rows: list[dict[str, Any]], plan: AnalysisPlan, recorded: RecordedStudy) -> list[str]:

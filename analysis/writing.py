@@ -25,6 +25,6 @@ def write_bytes(path: Path, content: bytes) -> Path:
     return path
 
 
-def write_table(path: Path, table: pd.DataFrame) -> Path:
+def table_bytes(table: pd.DataFrame) -> bytes:
     """A CSV table (RFC 4180: CRLF, quoted where needed, UTF-8); numbers at full precision, nan empty."""
-    return write_bytes(path, table.to_csv(index=False, lineterminator="\r\n").encode("utf-8"))
+    return table.to_csv(index=False, lineterminator="\r\n").encode("utf-8")

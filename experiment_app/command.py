@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 from cyclopts import App, Parameter
 from rich.console import Console
 
+from experiment_app.body_commands import body_commands
 from experiment_app.errors import RunError, UsageError
 from experiment_app.motion_commands import actor_commands, clip
 
@@ -25,6 +26,7 @@ out = Console(highlight=False, soft_wrap=True)
 problems = Console(stderr=True, highlight=False, soft_wrap=True)
 app.command(clip)
 app.command(actor_commands)
+app.command(body_commands)
 
 Data = Annotated[Path, Parameter(help="Folder of all data; each study has its own folder in it.")]
 StudyArgument = Annotated[str, Parameter(help="A study file (YAML), or the name of a shipped study: walk_ratio.")]
@@ -176,14 +178,16 @@ def power(
     study: StudyArgument,
     *,
     participants: Annotated[
-        list[int] | None, Parameter(consume_multiple=True, help="Numbers of participants; by default the planned one.")
+        list[int] | None,
+        Parameter(negative="", consume_multiple=True, help="Numbers of participants; by default the planned one."),
     ] = None,
     experiments: Annotated[int, Parameter(help="How many experiments to simulate.")] = 10_000,
     seed: Annotated[int, Parameter(help="The same seed gives the same table, however the work is split.")] = 1,
     shard: Annotated[str, Parameter(help="Do the i-th of n parts only, as 1/8, for many machines.")] = "1/1",
     part: Annotated[Path | None, Parameter(name="--out", help="Write this part's counts (JSON) for --combine.")] = None,
     combine: Annotated[
-        list[Path] | None, Parameter(consume_multiple=True, help="Join parts written with --out; nothing is simulated.")
+        list[Path] | None,
+        Parameter(negative="", consume_multiple=True, help="Join parts written with --out; nothing is simulated."),
     ] = None,
     plot: Annotated[Path | None, Parameter(help="Also draw power against participants (PNG).")] = None,
     workers: Annotated[int, Parameter(help="Processes; 0 for as many as there are cores.")] = 0,
@@ -253,6 +257,72 @@ def demo(
 
 
 @app.command
+def doctor(
+    *,
+    off_screen: Annotated[bool, Parameter(negative="", help="Draw off-screen even where there is a display.")] = False,
+) -> int:
+    """What this computer's OpenGL and display give: renderer, samples, refresh rate, measured frame intervals."""
+    from experiment_app.doctor import examine, lines
+
+    for line in lines(examine(off_screen)):
+        out.print(line, markup=False)
+    return 0
+
+
+@app.command
+def film(
+    study: StudyArgument,
+    *,
+    condition: Annotated[
+        list[str] | None,
+        Parameter(consume_multiple=True, help="factor=level, as actor=F1 speed=1.0; left out: the first level."),
+    ] = None,
+    seconds: Annotated[float, Parameter(help="Length of the film, s.")] = 4.0,
+    rate: Annotated[str, Parameter(help="Frames per second, exactly; 60, 59.94 or 60000/1001.")] = "60",
+    size: Annotated[str, Parameter(help="Size of the film; even numbers for videos.")] = "1280x720",
+    lod: Annotated[int | None, Parameter(help="Level of detail for every frame, 0 the finest.")] = None,
+    path: Annotated[
+        Path, Parameter(name="--out", help="clip.mp4 (needs PyAV), clip.webp, or a folder for PNG pictures.")
+    ] = Path("clip.mp4"),
+) -> int:
+    """Film a condition of a study off-screen at an exact frame rate; the frame times are read back and verified."""
+    from fractions import Fraction
+
+    from experiment_app.check import checked_study
+    from experiment_app.film import condition_of, film_scenes, walking, write_film
+
+    try:
+        frame_rate = Fraction(rate)
+    except (ValueError, ZeroDivisionError):
+        raise UsageError(f"--rate {rate}: write a number, as 60, 59.94 or 60000/1001.") from None
+    if not 1 <= frame_rate <= 1000 or not 0 < seconds <= 3600:
+        raise UsageError("a film has 1 to 1000 frames per second and lasts up to an hour.")
+    width, height = _size(size)
+    if path.suffix.lower() in (".mp4", ".mkv", ".mov", ".webm") and (width % 2 or height % 2):
+        raise UsageError(f"--size {size}: videos need an even width and height.")
+    read = checked_study(study).study
+    trial = condition_of(read, condition or ())
+    count = max(round(seconds * frame_rate), 1)
+    scenes = (walking(read, trial, float(number / frame_rate), lod) for number in range(count))
+    frames = _with_progress(film_scenes(scenes, (width, height)), count, "Drawing")
+    said = write_film(iter(frames), frame_rate, path)
+    out.print(f"{path}: {said}", markup=False)
+    return 0
+
+
+@app.command
+def gallery(
+    *, folder: Annotated[Path, Parameter(name="--out", help="Folder for the pictures.")] = Path("docs/images")
+) -> int:
+    """Make every picture of the documentation's gallery page."""
+    from experiment_app.gallery import make_gallery
+
+    for path in make_gallery(folder):
+        out.print(f"  {path}", markup=False)
+    return 0
+
+
+@app.command
 def schema(
     *, path: Annotated[Path, Parameter(name="--out", help="Where to write it.")] = Path("study.schema.json")
 ) -> int:
@@ -286,6 +356,30 @@ def copy(
     if not beside.exists():
         beside.write_text(schema_text(), encoding="utf-8")
     out.print(f"Copied to {path}. Edit it, then: gaitlab check {path}", markup=False)
+    return 0
+
+
+@app.command(name="compare-methods")
+def compare_methods_command(
+    *actors: Annotated[str, Parameter(help="Names of actors, or folders of one person's captures.")],
+    captures: Annotated[
+        Path | None,
+        Parameter(help="Folder of captures on which the poulaine's rebuilding is tested; by default the shared ones."),
+    ] = None,
+    out_folder: Annotated[Path, Parameter(name="--out", help="Folder for tables, figures and report.")] = Path(
+        "methods"
+    ),
+) -> int:
+    """Compare the ways of making a walk with captured walks: joint angles, foot slide, rebuilt poulaines, pictures."""
+    from experiment_app.method_commands import compare_methods
+
+    if not actors:
+        raise UsageError("name at least one actor, as gaitlab compare-methods F1.")
+    report = compare_methods(actors, out_folder, captures, _say)
+    for sentence in report.headlines:
+        out.print(sentence, markup=False)
+    for path in report.paths:
+        out.print(f"  {path}", markup=False)
     return 0
 
 

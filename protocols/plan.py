@@ -103,7 +103,8 @@ def keys_of(study: Study, participant_number: int) -> dict[str, str]:
 
 def _with_keys(study: Study, keys: Mapping[str, str]) -> Pages:
     """The study's pages with {lower}, {raise}, {confirm} and {break} replaced by this participant's keys."""
-    labels = {**KEY_LABELS, **study.words.keys}
+    labels: dict[str, str] = {**KEY_LABELS}
+    labels.update(study.words.keys.items())
 
     def filled(text: str) -> str:
         for name, key in keys.items():

@@ -44,7 +44,8 @@ FURTHER = f"""
 
 
 def with_plan(further: str) -> str:
-    text = re.sub(r"  figures:\n(    - .*\n)+", "", study_text())
+    """The shipped study with these parts of the plan in place of its own equivalence tests and figures."""
+    text = re.sub(r"^  (figures|equivalence):.*\n(    - .*\n)+", "", study_text(), flags=re.M)
     return text.replace("  exclusions: []", f"{further.strip(chr(10))}\n  exclusions: []")
 
 

@@ -1,0 +1,66 @@
+"""What a study file can ask for, test by test and figure by figure, as plain values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class TTestPlan:
+    """A one-sample t test in each level of a factor, against a value of its own."""
+
+    each: str
+    against: Mapping[str, float]
+    label: str
+
+
+@dataclass(frozen=True)
+class EquivalencePlan:
+    """Two one-sided tests of every pair of levels; bound in the unit of the measure."""
+
+    factor: str
+    bound: float
+    by: str | None = None
+
+
+@dataclass(frozen=True)
+class RegressionPlan:
+    """The mean of every level of a factor on values known of that level: predictor -> level -> value."""
+
+    of: str
+    on: Mapping[str, Mapping[str, float]]
+
+
+@dataclass(frozen=True)
+class RankTransformPlan:
+    """Factors of the aligned rank transform."""
+
+    within: tuple[str, ...]
+    between: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class MixedModelPlan:
+    """Random intercepts of participants and of the levels of `stimulus`; fixed factors, fully crossed."""
+
+    stimulus: str
+    factors: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class FigurePlan:
+    """kind: means, interaction, raincloud, qq or order; reference: label of t tests whose values are drawn too."""
+
+    kind: str
+    x: str | None = None
+    lines: str | None = None
+    reference: str | None = None
+
+
+@dataclass(frozen=True)
+class Exclusion:
+    """Trials left out, by a condition on one column, and why."""
+
+    where: str
+    reason: str

@@ -1,0 +1,61 @@
+"""The last sections of the report: normality cell by cell, and the cell means."""
+
+from __future__ import annotations
+
+from analysis import apa, report_text
+from analysis.markup import Cell, Markup, element, join, table, text
+from analysis.report_cells import interval, p_cell, str_right, unit_cell
+from analysis.results import ALPHA, PlannedResults
+
+
+def normality_section(results: PlannedResults) -> Markup:
+    data = results.normality
+    if not len(data):
+        return Markup("")
+    unit, _ = unit_cell(results)
+    factors = [name for name in (*results.plan.within, *results.plan.between) if name in data]
+    columns: dict[str, tuple[object, Cell]] = {
+        **{name: (name, text) for name in factors},
+        "n": (element("i", "n"), str_right),
+        "mean": ("mean", unit),
+        "sd": ("SD", unit),
+        "w": (element("i", "W"), lambda w: apa.share(w, 3)),
+        "p": (element("i", "p"), p_cell),
+    }
+    cells = data[data["scope"] == "cell"]
+    return join(
+        [
+            element("h2", "Normality"),
+            element("p", report_text.normality_sentence(results)),
+            element(
+                "details",
+                element("summary", f"Shapiro–Wilk test of each of the {len(cells)} cells"),
+                table(cells, columns, list(cells["p"] < ALPHA)),
+            ),
+        ]
+    )
+
+
+def descriptives_section(results: PlannedResults) -> Markup:
+    data = results.descriptives
+    unit, decimals = unit_cell(results)
+    factors = [name for name in (*results.plan.within, *results.plan.between) if name in data]
+    columns: dict[str, tuple[object, Cell]] = {
+        **{name: (name, text) for name in factors},
+        "n": (element("i", "n"), str_right),
+        "mean": ("mean", unit),
+        "sd": ("SD", unit),
+        "se": ("SE", unit),
+        "limits": ("95 % limits", str_right),
+    }
+    shown = data.assign(limits=[interval(a, b, decimals) for a, b in zip(data["ci_low"], data["ci_high"], strict=True)])
+    return join(
+        [
+            element("h2", "Cell means"),
+            element(
+                "details",
+                element("summary", f"Means of the {len(data)} cells over participants"),
+                table(shown, columns),
+            ),
+        ]
+    )

@@ -1,0 +1,156 @@
+"""Mistakes in the planned analysis of a study file: factors, levels, labels and columns it names in vain."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable, Iterator
+
+from protocols.study import FurtherAnalysis, Study
+from protocols.study_file import Mistake, Place
+
+RESPONSE_COLUMNS = ("walk_ratio", "step_frequency", "step_length", "response_time")
+"""Columns of a trial that an exclusion may name, besides the factors and the frame counts."""
+
+
+def no_such(name: str, known: Iterable[str], what: str) -> str:
+    """The sentence for a name that is not known: the nearest one that is, or all of them."""
+    known = list(known)
+    near = difflib.get_close_matches(name, known, n=1)
+    way = f"did you mean {near[0]}?" if near else f"there are: {', '.join(known) or 'none'}"
+    return f"{name} is no {what}; {way}"
+
+
+def analysis_mistakes(study: Study) -> Iterator[Mistake]:
+    """Factors, levels and columns that the planned analysis, or one of those in `also`, names in vain."""
+    measures: set[str] = set()
+    top: Place = ("analysis",)
+    for at, plan in [(top, study.analysis), *(((*top, "also", i), p) for i, p in enumerate(study.analysis.also))]:
+        if plan.measure in measures:
+            yield Mistake((*at, "measure"), f"{plan.measure} is analysed twice; put all its tests into one analysis")
+        measures.add(plan.measure)
+        yield from _measure(study, plan, at)
+        yield from _factors_of_tests(study, plan, at)
+        yield from _t_tests(study, plan, at)
+        yield from _equivalence_and_regression(study, plan, at)
+        yield from _figures(study, plan, at)
+    columns = [
+        *RESPONSE_COLUMNS,
+        *study.factors,
+        *study.participants.between,
+        "late_frames",
+        "key_presses",
+        "reversals",
+    ]
+    for i, exclusion in enumerate(study.analysis.exclusions):
+        parts = re.fullmatch(r"\s*(\w+)\s*(<=|>=|==|!=|<|>)\s*(\S.*?)\s*", exclusion.where)
+        where: Place = ("analysis", "exclusions", i, "where")
+        if parts is None:
+            yield Mistake(where, f"{exclusion.where!r} is no condition; write one as `late_frames > 5`")
+        elif parts[1] not in columns:
+            yield Mistake(where, no_such(parts[1], columns, "column"))
+
+
+def _covered(study: Study, where: Place, given: Iterable[str], factor: str, what: str) -> Iterator[Mistake]:
+    known = list(given)
+    missing = [str(level) for level in study.factors[factor] if str(level) not in known]
+    if missing:
+        yield Mistake(where, f"{what} of {', '.join(missing)} is missing; give one for every level of {factor}")
+
+
+def _measure(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
+    actor = study.stimulus.actor
+    if plan.measure != "normalised_walk_ratio":
+        if plan.heights is not None:
+            yield Mistake((*at, "heights"), f"{plan.measure} needs no heights; remove them", on_key=True)
+    elif plan.heights is None:
+        yield Mistake((*at, "measure"), "normalised_walk_ratio needs heights: the height of every actor in m")
+    elif actor.startswith("$") and actor[1:] in study.factors:
+        yield from _covered(study, (*at, "heights"), plan.heights, actor[1:], "the height")
+    elif not actor.startswith("$") and actor not in plan.heights:
+        yield Mistake((*at, "heights"), f"the height of {actor} is missing")
+    if plan.measure == "confusion_rate" and study.task.kind == "adjustment":
+        message = "confusion_rate needs trials in which one of two walks is chosen; in adjustment trials none is"
+        yield Mistake((*at, "measure"), message)
+
+
+def _factors_of_tests(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
+    within, between = list(study.factors), list(study.participants.between)
+    named = [
+        (("anova", "within"), plan.anova.within, within, "within factor"),
+        (("anova", "between"), plan.anova.between, between, "between factor"),
+    ]
+    if (ranks := plan.aligned_rank_transform) is not None:
+        part = "aligned_rank_transform"
+        named += [
+            ((part, "within"), ranks.within, within, "within factor"),
+            ((part, "between"), ranks.between, between, "between factor"),
+        ]
+        if not ranks.within + ranks.between:
+            yield Mistake((*at, part), "name at least one factor, within or between")
+    if (mixed := plan.mixed_model) is not None:
+        named.append((("mixed_model", "factors"), mixed.factors, within + between, "factor"))
+        if mixed.stimulus not in within:
+            yield Mistake((*at, "mixed_model", "stimulus"), no_such(mixed.stimulus, within, "within factor"))
+        elif mixed.stimulus in mixed.factors:
+            message = f"{mixed.stimulus} is the random stimulus already; leave it out of the factors"
+            yield Mistake((*at, "mixed_model", "factors"), message)
+    for place, names, known, what in named:
+        for i, name in enumerate(names):
+            if name not in known:
+                yield Mistake((*at, *place, i), no_such(name, known, what))
+            elif name in study.factors and len(study.factors[name]) < 2:
+                yield Mistake((*at, *place, i), f"{name} has one level; a factor needs two")
+            elif name in names[:i]:
+                yield Mistake((*at, *place, i), f"{name} stands twice; remove one")
+
+
+def _t_tests(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
+    for i, test in enumerate(plan.t_tests):
+        if test.each not in study.factors:
+            yield Mistake((*at, "t_tests", i, "each"), no_such(test.each, study.factors, "factor"))
+            continue
+        levels = [str(level) for level in study.factors[test.each]]
+        without = [level for level in levels if level not in test.against]
+        for level in test.against:
+            # values for levels that are not shown do no harm, unless one of them may be misspelt
+            if level not in levels and without:
+                message = no_such(level, levels, f"level of {test.each}")
+                yield Mistake((*at, "t_tests", i, "against", level), message, on_key=True)
+
+
+def _equivalence_and_regression(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
+    in_anova = plan.anova.within + plan.anova.between
+    for i, same in enumerate(plan.equivalence):
+        for field, factor in (("factor", same.factor), ("by", same.by)):
+            if factor is not None and factor not in in_anova:
+                yield Mistake((*at, "equivalence", i, field), no_such(factor, in_anova, "factor of the anova"))
+        if same.by == same.factor:
+            yield Mistake((*at, "equivalence", i, "by"), f"{same.by} is the factor compared; name another or none")
+    if plan.regression is None:
+        return
+    of, on = plan.regression.of, plan.regression.on
+    if of not in study.factors:
+        yield Mistake((*at, "regression", "of"), no_such(of, study.factors, "within factor"))
+        return
+    for name, values in on.items():
+        yield from _covered(study, (*at, "regression", "on", name), values, of, f"the {name}")
+    cases, needed = len(study.factors[of]), len(on) + 2
+    if cases < needed:
+        message = f"{cases} levels of {of} are too few for {len(on)} predictors; at least {needed} are needed"
+        yield Mistake((*at, "regression", "on"), message)
+
+
+def _figures(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
+    factors, labels = [*study.factors, *study.participants.between], [test.label for test in plan.t_tests]
+    for i, figure in enumerate(plan.figures):
+        where: Place = (*at, "figures", i)
+        for field, factor in (("x", figure.x), ("lines", figure.lines)):
+            if factor is not None and factor not in factors:
+                yield Mistake((*where, field), no_such(factor, factors, "factor"))
+        if figure.kind in ("means", "interaction", "raincloud") and figure.x is None:
+            yield Mistake(where, f"a figure of kind {figure.kind} needs x: the factor on the x axis")
+        if figure.kind == "interaction" and figure.lines is None:
+            yield Mistake(where, "an interaction needs lines: the factor drawn as lines")
+        if figure.reference is not None and figure.reference not in labels:
+            yield Mistake((*where, "reference"), no_such(figure.reference, labels, "label of a t-test"))
