@@ -61,6 +61,18 @@ def poulaine_reconstruction() -> pd.DataFrame:
     return data.assign(response_time=RNG.gamma(4, 1, len(data)))
 
 
+def speed_editing() -> pd.DataFrame:
+    methods = ("poulaine", "blending", "warping")
+    data = pd.DataFrame(
+        rows(8, methods, ("slowed", "sped_up"), ACTORS, (0.8, 1.0, 1.2), ("left", "right")),
+        columns=["participant", "method", "direction", "actor", "speed", "side"],
+    )
+    data["gender"] = np.where(data["participant"].str[-1].astype(int) % 2, "f", "m")
+    data["original"] = "captured"
+    data["chosen"] = np.where(RNG.random(len(data)) < 0.4, "edited", "captured")
+    return data.assign(response_time=RNG.gamma(4, 1, len(data)))
+
+
 def crowd_variety() -> pd.DataFrame:
     data = pd.DataFrame(
         rows(9, ("1:2", "1:5", "1:10", "1:25", "1"), (250, 500, 1000), (1, 2, 3)),
