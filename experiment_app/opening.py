@@ -13,10 +13,11 @@ from typing import Any
 from experiment_app.errors import UsageError
 from experiment_app.journal import Journal, create_journal, reopen_journal
 from experiment_app.run_folder import Run, new_run, participant_number, participant_runs, progress, run_numbers
-from protocols.design import default_seed
-from protocols.plan import Plan, keys_of, make_plan
+from protocols.design import default_seed, make_trials, practice_trials
+from protocols.plan import Plan, keys_of, make_plan, value_of
 from protocols.record import Continued, Header
 from protocols.session import remaining
+from protocols.study import Study
 from protocols.study_file import StudyFile, parse_study
 
 RECORDED_VERSIONS = ("gaitlab", "numpy", "scipy", "moderngl", "glfw", "pydantic")
@@ -77,6 +78,7 @@ def open_new(
         versions=_versions(),
         display=display,
         started=_utc_now(),
+        walkers=_provenance(study.study),
     )
     return OpenRun(run, make_plan(study.study, seed, order), create_journal(run, header), seed, order, False)
 
@@ -90,6 +92,15 @@ def open_unfinished(run: Run, *, display: Mapping[str, Any]) -> OpenRun:
     journal.write([Continued(0.0, _utc_now(), torn, display, _versions())])
     plan = remaining(plan, progress(run))
     return OpenRun(run, plan, journal, header["seed"], header["participant_number"], True)
+
+
+def _provenance(study: Study) -> dict[str, str]:
+    """Actor to where the walk comes from, for every actor of the study and its training."""
+    from stimuli.actors import load_actor
+
+    trials = [*make_trials(study, 0), *practice_trials(study)]
+    actors = sorted({str(value_of(study.stimulus.actor, trial)) for trial in trials})
+    return {actor: load_actor(actor).provenance for actor in actors}
 
 
 def _utc_now() -> str:

@@ -22,6 +22,7 @@ class Header:
     """The first line of a journal: what is needed to read, repeat and cite the run.
 
     participant_number: order of arrival, from 1; keys: what lower, raise, confirm and break were for this participant.
+    walkers: actor to where the walk comes from: captured, modelled, or how much of each.
     """
 
     kind = "header"
@@ -37,6 +38,7 @@ class Header:
     versions: Mapping[str, str]
     display: Mapping[str, Any]
     started: str
+    walkers: Mapping[str, str] = field(default_factory=dict)
     format: int = FORMAT
 
 

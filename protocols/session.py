@@ -135,6 +135,8 @@ def handle(session: Session, event: Event) -> Session:
 
 
 def _entered(session: Session, index: int, time: float) -> Session:
+    if index == len(session.plan.steps):  # a plan of trials alone, as for a film, has no last page
+        return replace(_emit(session, Ended(time, "finished")), ended="finished")
     session = replace(session, index=index, shown=None, pauses=0, stage=_stage(session.plan, index))
     step = session.step
     if isinstance(step, TextStep) and step.kind == "debrief":

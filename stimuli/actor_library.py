@@ -138,7 +138,9 @@ def read_stored(name: str, library: Path | None = None) -> StoredActor:
         with np.load(path, allow_pickle=False) as content:
             return _read(json.loads(str(content["about"])), content["coefficients"].astype(np.float64))
     except (OSError, ValueError, KeyError, TypeError, IndexError, EOFError, zipfile.BadZipFile) as error:
-        raise ActorError(f"{path} is damaged or of another version of gaitlab ({error}); import the actor again") from None
+        raise ActorError(
+            f"{path} is damaged or of another version of gaitlab ({error}); import the actor again"
+        ) from None
 
 
 def actor_of(stored_actor: StoredActor, body: Body | None = None) -> Actor:

@@ -1,4 +1,4 @@
-"""The bodies that come with gaitlab, ready to be skinned; and a body scaled to a person's height."""
+"""The bodies that come with gaitlab or were imported on this computer; and a body scaled to a person's height."""
 
 from __future__ import annotations
 
@@ -6,16 +6,20 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
 
 from stimuli.body import Body, Surface
 from stimuli.body_files.baked import haircuts, read_baked
 from stimuli.body_files.errors import BodyError
+from stimuli.body_files.imported import import_body
+from stimuli.body_library import imported_names, path_of
+from stimuli.point_light import FIGURES
 from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
 from stimuli.skinning import skin
 
-__all__ = ["BodyError", "body_names", "hair_names", "load_body", "scaled", "with_girths"]
+__all__ = ["BodyError", "body_names", "hair_names", "load_body", "scaled", "shipped_names", "with_girths"]
 
 _NAMES = ("woman", "man")
 SLIMMEST, STOUTEST = 0.6, 1.8
@@ -23,15 +27,32 @@ _THICKENED = tuple(j for j in JOINTS if j != "head" and not j.endswith(("Foot", 
 TALLEST, SHORTEST = 2.72, 0.5  # m; the tallest person on record measured 2.72 m
 
 
-def body_names() -> tuple[str, ...]:
-    """Names that `load_body` knows."""
+def shipped_names() -> tuple[str, ...]:
+    """The bodies that come with gaitlab."""
     return _NAMES
 
 
-@cache
+def body_names() -> tuple[str, ...]:
+    """What a study can name as body: shipped bodies, imported ones, and figures drawn without a body."""
+    return (*_NAMES, *imported_names(), *FIGURES)
+
+
 def load_body(name: str, hair: str | None = None) -> Body:
-    """A body that comes with gaitlab; `hair` is one of `hair_names(name)`, None its usual one."""
+    """A shipped or imported body; `hair` is one of `hair_names(name)`, None its usual one."""
+    if name not in _NAMES and name in imported_names():
+        path = path_of(name)
+        return _imported(name, path, path.stat().st_mtime_ns)
+    return _shipped(name, hair)
+
+
+@cache
+def _shipped(name: str, hair: str | None) -> Body:
     return read_baked(_file(name), f"body {name!r}", hair)
+
+
+@cache
+def _imported(name: str, path: Path, _changed: int) -> Body:
+    return replace(import_body(path), name=name)
 
 
 @cache
@@ -95,5 +116,8 @@ def _bone(joint: int, places: Floats) -> Floats:
 
 def _file(name: str) -> bytes:
     if name not in _NAMES:
-        raise BodyError(f"there is no body {name!r}; known bodies are {', '.join(_NAMES)}")
+        if name in FIGURES:
+            raise BodyError(f"{name} is drawn without a body")
+        known = (*_NAMES, *imported_names())
+        raise BodyError(f"there is no body {name!r}; known bodies are {', '.join(known)}")
     return files("stimuli").joinpath("data", "bodies", f"{name}.glb").read_bytes()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,11 @@ class Surface:
     positions: (V, 3) m, bind pose; normals: (V, 3) unit length; occlusion: (V,) 0 (dark) .. 1 (open sky).
     joints:    (V, 4) int, indices into skeleton JOINTS; weights: (V, 4), not negative, rows sum to 1.
     triangles: (T, 3) int, counter-clockwise seen from outside.
+    picture:   (H, W, 4) uint8 sRGB and alpha, multiplied by the colour; None is the colour alone.
+    picture_at: (V, 2) places in the picture, (0, 0) its upper left corner; None without a picture.
+    alpha:     what the picture's alpha means (glTF 2.0, section 3.9.4); alpha_cutoff: of a mask;
+               alpha_factor: multiplies it.
+    double_sided: seen from behind too.
     """
 
     name: str
@@ -33,6 +39,12 @@ class Surface:
     joints: Integers
     weights: Floats
     triangles: Integers
+    picture: NDArray[np.uint8] | None = None
+    picture_at: Floats | None = None
+    alpha: Literal["opaque", "mask", "blend"] = "opaque"
+    alpha_cutoff: float = 0.5
+    alpha_factor: float = 1.0
+    double_sided: bool = False
 
 
 @dataclass(frozen=True, eq=False)

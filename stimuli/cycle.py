@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from stimuli.clip import Clip, FootEvent, world_pose
-from stimuli.events import GaitError, GaitMeasures, events_of, foot_paths, measure_paths
+from stimuli.events import GaitError, GaitMeasures, find_events, foot_paths, measure_paths
 from stimuli.gait import Gait
 from stimuli.motion_files.rest_pose import RestPose, rest_pose
 from stimuli.rotations import (
@@ -96,9 +96,15 @@ class Cycle:
 
 def extract_cycle(clip: Clip, phases: int = PHASES) -> Cycle:
     """The best one-stride loop of a walk. Raises GaitError if it has no whole stride."""
-    events = events_of(clip)
-    measures = measure_paths(foot_paths(clip), events, clip.name)
+    return cycle_and_measures(clip, phases)[0]
+
+
+def cycle_and_measures(clip: Clip, phases: int = PHASES) -> tuple[Cycle, GaitMeasures]:
+    """The best one-stride loop, and the gait of the whole walk it was chosen from. Raises GaitError."""
     world, positions = world_pose(clip)
+    paths = foot_paths(clip, positions)
+    events = clip.events or find_events(paths)
+    measures = measure_paths(paths, events, clip.name)
     first, last, difference = _most_alike(clip, positions, measures)
     rest = rest_pose(clip)
     joints = tuple(joint for joint in JOINTS if joint in clip.roles)
@@ -111,7 +117,7 @@ def extract_cycle(clip: Clip, phases: int = PHASES) -> Cycle:
     seam = _strike_share(clip, events, first, last)
     sample = (np.arange(phases) / phases + seam) % 1.0
     time = (last - first) / clip.rate
-    return Cycle(
+    cycle = Cycle(
         joints=joints,
         parents=role_parents(joints),
         offsets=_offsets(clip, rest, joints),
@@ -131,6 +137,7 @@ def extract_cycle(clip: Clip, phases: int = PHASES) -> Cycle:
             rest="zero pose" if rest.standing_zero else "mean posture",
         ),
     )
+    return cycle, measures
 
 
 def close_curve(values: Floats, share: Floats) -> Floats:

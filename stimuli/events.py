@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -82,13 +83,16 @@ class GaitMeasures:
     on_the_spot: bool  # a treadmill: speed is the stance feet's backward speed
 
 
-def foot_paths(clip: Clip) -> FootPaths:
-    """Pelvis, ankles and toes of a clip. Raises GaitError if a role is missing; toes may be the foot's end."""
+def foot_paths(clip: Clip, positions: Floats | None = None) -> FootPaths:
+    """Pelvis, ankles and toes of a clip. Raises GaitError if a role is missing; toes may be the foot's end.
+
+    positions: (T, J, 3) m, the clip's world_positions where they are at hand.
+    """
     needed = ("hips", "leftUpperLeg", "rightUpperLeg", "leftFoot", "rightFoot")
     missing = [role for role in needed if role not in clip.roles]
     if missing:
         raise GaitError(f"{clip.name}: no joint plays {', '.join(missing)}; name it in a YAML file beside the motion")
-    positions = world_positions(clip)
+    positions = world_positions(clip) if positions is None else positions
     toes = [positions[:, _toes_of(clip, side)] for side in SIDES]
     return FootPaths(
         pelvis=positions[:, clip.roles["hips"]],
@@ -198,9 +202,15 @@ def _vertex(values: Floats, peak: int) -> float:
 
 def _low_pass(values: Floats, cutoff: float, rate: float) -> Floats:
     """Zero-lag 2nd-order Butterworth along the first axis, cut-off at most 0.4 of the rate."""
-    sections = butter(2, min(cutoff, 0.4 * rate) / (rate / 2), output="sos")
+    sections = _sections(min(cutoff, 0.4 * rate) / (rate / 2))
     padding = min(len(values) - 1, int(1.5 * rate / min(cutoff, 0.4 * rate)) + 3)
     return sosfiltfilt(sections, values, axis=0, padlen=padding)
+
+
+@cache
+def _sections(cutoff: float) -> Floats:
+    """2nd-order Butterworth low-pass; cutoff as a share of half the rate. Its design costs more than its use."""
+    return np.asarray(butter(2, cutoff, output="sos"))
 
 
 def measure(clip: Clip) -> GaitMeasures:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -11,14 +12,37 @@ from stimuli.body import Body, Integers, Surface
 from stimuli.body_files.container import Container, open_container
 from stimuli.body_files.errors import BodyError
 from stimuli.body_files.humanoid import Humanoid, bind_matrices, understand
+from stimuli.body_files.materials import Material, read_materials
 from stimuli.body_files.scene import GltfScene, Primitive, placed_vertices, read_scene
 from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
 
-GREY = np.array([0.5, 0.5, 0.5])
+MOST_MATERIALS = 24  # as the renderer's shaders have room for
+COARSER = re.compile(r"(?i)(^|[_ .-])lod[_ ]?[1-9]")
+"""In the names of nodes that show the same body again with fewer triangles."""
+
+
+@dataclass(frozen=True)
+class Explained:
+    """What was understood of a file beside the body itself.
+
+    source: how joints were told apart: "VRM", a table of names, or "shape"; joints: role -> the file's name for it;
+    props: meshes left out because they hang on no skin; problems: sentences about pictures that are missing.
+    """
+
+    source: str
+    joints: dict[str, str]
+    joints_in_file: int
+    props: int
+    problems: tuple[str, ...]
 
 
 def import_body(path: Path) -> Body:
-    """The person in a .glb or .gltf file, in one level of detail, without textures (their colour factor is kept)."""
+    """The person in a .glb or .gltf file, in one level of detail, with base-colour pictures."""
+    return import_and_explain(path)[0]
+
+
+def import_and_explain(path: Path) -> tuple[Body, Explained]:
+    """The person in a file, and what was understood of it."""
     container = open_container(path)
     try:
         return _person(container, path)
@@ -28,7 +52,7 @@ def import_body(path: Path) -> Body:
         raise BodyError(f"{path.name}: the file breaks glTF's own rules ({type(error).__name__})") from error
 
 
-def _person(container: Container, path: Path) -> Body:
+def _person(container: Container, path: Path) -> tuple[Body, Explained]:
     scene = read_scene(container, path.name)
     skin = _main_skin(scene, path.name)
     worn = _worn(scene)
@@ -36,8 +60,9 @@ def _person(container: Container, path: Path) -> Body:
     bound = [_bound(scene, node, primitive, binds, path.name) for node, primitive in worn]
     everything = np.concatenate([points for _, points in bound])
     person = understand(container, scene, skin, everything, path.name)
+    material = read_materials(container, path)
     surfaces = tuple(
-        _surface(container, person, node, primitive, carried, points)
+        _surface(material(primitive.material), person, node, primitive, carried, points)
         for (node, primitive), (carried, points) in zip(worn, bound, strict=True)
         if len(primitive.triangles)
     )
@@ -45,7 +70,21 @@ def _person(container: Container, path: Path) -> Body:
         raise BodyError(f"{path.name}: its skinned meshes have no triangles")
     offsets = person.positions - np.array([person.positions[p] if p >= 0 else np.zeros(3) for p in PARENTS])
     stature = max(float(s.positions[:, 1].max()) for s in surfaces)
-    return Body(path.stem, Skeleton(offsets), stature, (surfaces,))
+    if len(surfaces) > MOST_MATERIALS:
+        surfaces = _merged(surfaces)
+    if len(surfaces) > MOST_MATERIALS:
+        raise BodyError(f"{path.name}: it has {len(surfaces)} materials, more than {MOST_MATERIALS}; join some first")
+    used = {p.material for _, p in worn}
+    problems = dict.fromkeys(material(m).problem for m in sorted(used, key=str) if material(m).problem)
+    props = sum(node.mesh is not None and node.skin is None for node in scene.nodes)
+    explained = Explained(
+        source=person.source,
+        joints={role: scene.nodes[node].name or f"node {node}" for role, node in person.roles.items()},
+        joints_in_file=len(scene.skins[skin].joints),
+        props=props,
+        problems=tuple(problems),
+    )
+    return Body(path.stem, Skeleton(offsets), stature, (surfaces,)), explained
 
 
 def bounding_box(path: Path) -> tuple[Floats, Floats]:
@@ -65,13 +104,17 @@ def _main_skin(scene: GltfScene, where: str) -> int:
 
 
 def _worn(scene: GltfScene) -> list[tuple[int, Primitive]]:
-    """Skinned primitives with their node. Meshes hung whole on a joint (props) are left out."""
-    return [
+    """Skinned primitives with their node, of the finest level of detail where nodes are named after theirs.
+
+    Meshes hung whole on a joint (props) are left out.
+    """
+    worn = [
         (index, primitive)
         for index, node in enumerate(scene.nodes)
         for primitive in scene.primitives
         if node.skin is not None and primitive.mesh == node.mesh and primitive.joints is not None
     ]
+    return [pair for pair in worn if not COARSER.search(scene.nodes[pair[0]].name)] or worn
 
 
 def _bound(scene: GltfScene, node: int, primitive: Primitive, binds: Floats, where: str) -> tuple[Integers, Floats]:
@@ -88,31 +131,68 @@ def _bound(scene: GltfScene, node: int, primitive: Primitive, binds: Floats, whe
 
 
 def _surface(
-    container: Container, person: Humanoid, node: int, primitive: Primitive, carried: Integers, points: Floats
+    material: Material, person: Humanoid, node: int, primitive: Primitive, carried: Integers, points: Floats
 ) -> Surface:
     positions = points @ person.to_person[:, :3].T + person.to_person[:, 3]
-    material = _material(container, primitive.material)
-    pbr = material.get("pbrMetallicRoughness", {})
-    colour = np.array([float(c) for c in pbr.get("baseColorFactor", [*GREY, 1])[:3]])
     assert primitive.weights is not None
     joints, weights = _four(person.places[carried], primitive.weights)
+    places = None
+    picture = material.picture
+    if picture is not None and material.texture_set < len(primitive.texture_places):
+        stored = primitive.texture_places[material.texture_set]
+        places = stored @ material.to_picture[:, :2].T + material.to_picture[:, 2]
     return Surface(
-        name=str(material.get("name", f"mesh {node}")),
-        colour=np.clip(colour, 0, 1),
-        roughness=float(np.clip(float(pbr.get("roughnessFactor", 1.0)), 0.05, 1)),
+        name=material.name or f"mesh {node}",
+        colour=material.colour[:3],
+        roughness=material.roughness,
         positions=positions,
         normals=_normals(positions, primitive.triangles),
         occlusion=np.ones(len(positions)),
         joints=joints,
         weights=weights,
         triangles=primitive.triangles,
+        picture=picture if places is not None else None,
+        picture_at=places,
+        alpha=material.alpha,
+        alpha_cutoff=material.alpha_cutoff,
+        alpha_factor=float(material.colour[3]),
+        double_sided=material.double_sided,
     )
 
 
-def _material(container: Container, index: Any) -> dict[str, Any]:
-    materials = container.document.get("materials", [])
-    found: dict[str, Any] = materials[index] if isinstance(index, int) and 0 <= index < len(materials) else {}
-    return found
+def _merged(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
+    """Surfaces of the same look joined into one, in the order of their first."""
+    groups: dict[tuple[object, ...], list[Surface]] = {}
+    for s in surfaces:
+        key = (
+            s.name,
+            *s.colour.tolist(),
+            s.roughness,
+            id(s.picture),
+            s.alpha,
+            s.alpha_cutoff,
+            s.alpha_factor,
+            s.double_sided,
+        )
+        groups.setdefault(key, []).append(s)
+    return tuple(_joined(group) for group in groups.values())
+
+
+def _joined(group: list[Surface]) -> Surface:
+    if len(group) == 1:
+        return group[0]
+    starts = np.cumsum([0, *(len(s.positions) for s in group[:-1])])
+    places = [s.picture_at for s in group if s.picture_at is not None]
+    return replace(
+        group[0],
+        positions=np.concatenate([s.positions for s in group]),
+        normals=np.concatenate([s.normals for s in group]),
+        occlusion=np.concatenate([s.occlusion for s in group]),
+        joints=np.concatenate([s.joints for s in group]),
+        weights=np.concatenate([s.weights for s in group]),
+        triangles=np.concatenate([s.triangles + start for s, start in zip(group, starts, strict=True)]),
+        picture_at=np.concatenate(places) if places else None,
+    )
 
 
 def _four(places: Floats, weights: Floats) -> tuple[Integers, Floats]:

@@ -24,6 +24,7 @@ UNDERSTOOD = frozenset(
         "KHR_materials_unlit",
         "KHR_texture_transform",
         "KHR_materials_pbrSpecularGlossiness",
+        "EXT_texture_webp",
         "VRM",
         "VRMC_vrm",
     }
@@ -58,7 +59,8 @@ class Skin:
 @dataclass(frozen=True, eq=False)
 class Primitive:
     """Vertices of one material: positions (V, 3) as stored, the mesh it belongs to, and, when it is skinned,
-    joints (V, K) as places in the skin's list and weights (V, K) summing to 1; triangles (T, 3)."""
+    joints (V, K) as places in the skin's list and weights (V, K) summing to 1; triangles (T, 3); texture_places
+    (V, 2) per set of coordinates, an empty tuple without."""
 
     mesh: int
     material: int | None
@@ -66,6 +68,7 @@ class Primitive:
     joints: Integers | None
     weights: Floats | None
     triangles: Integers
+    texture_places: tuple[Floats, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,7 +222,19 @@ def _primitive(container: Container, mesh: int, primitive: dict[str, Any], where
         raise BodyError(f"{where}: a mesh has triangles that name vertices which do not exist")
     joints, weights = _influences(container, attributes, len(positions), where)
     material = primitive.get("material")
-    return Primitive(mesh, material, positions, joints, weights, indices.reshape(-1, 3))
+    places = _texture_places(container, attributes, len(positions), where)
+    return Primitive(mesh, material, positions, joints, weights, indices.reshape(-1, 3), places)
+
+
+def _texture_places(container: Container, attributes: dict[str, Any], count: int, where: str) -> tuple[Floats, ...]:
+    """(V, 2) of every set of texture coordinates, in order."""
+    found: list[Floats] = []
+    while f"TEXCOORD_{len(found)}" in attributes:
+        values = read_accessor(container, attributes[f"TEXCOORD_{len(found)}"], where).astype(np.float64)
+        if values.shape != (count, 2) or not np.all(np.isfinite(values)):
+            raise BodyError(f"{where}: texture coordinates of a mesh do not match its vertices")
+        found.append(values)
+    return tuple(found)
 
 
 def _influences(

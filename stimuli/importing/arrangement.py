@@ -15,6 +15,7 @@ import numpy as np
 
 from stimuli.actors import CYCLE_SPEEDS, METRONOME, Person, walk_coefficients
 from stimuli.gait_model import SIGNALS, load_gait_model
+from stimuli.importing.skeleton_bias import skeleton_bias
 from stimuli.importing.walks import CapturedWalk
 from stimuli.skeleton import Floats
 
@@ -23,6 +24,11 @@ PERSON_RATIO = 3.0
 
 BELIEVED = 0.4
 """Share of the difference from the average person's posture that is believed where it hangs on a rest pose's zero."""
+
+EARLIER_OFF = 0.02
+"""Share of the cycle by which the drawn shoe leaves the ground before the captured foot: its tip is stiffer than a
+forefoot, so that at the captured toe-off it would hold the leg back (set on four captures: the drawn knee is nearest
+to the captured one)."""
 
 TRUNK = ("hips_x", "spine_x", "chest_x", "neck_x", "head_x")
 LEGS = ("thigh", "shank", "foot_yaw", "knee_yaw")
@@ -128,15 +134,13 @@ def _captured(walk: CapturedWalk, person: Person) -> ArrangedCycle:
     """The walk as captured, its posture's zero and what it does not hold taken from the gait model."""
     model = load_gait_model()
     none = np.zeros_like(walk.coefficients)
-    average, stance = walk_coefficients(
-        model, person, none, walk.leg_length, walk.gait.speed, walk.gait.step_frequency
-    )
-    coefficients = np.where(np.isnan(walk.coefficients), average, walk.coefficients)
+    average, stance = walk_coefficients(model, person, none, walk.leg_length, walk.gait.speed, walk.gait.step_frequency)
+    coefficients = np.where(np.isnan(walk.coefficients), average, walk.coefficients - skeleton_bias(walk.names))
     for name in TRUNK + (() if walk.marker_based else LEGS):
         index = SIGNALS.index(name)
         share = 0.0 if name == "hips_x" and walk.marker_based else BELIEVED
         coefficients[index, 0] = average[index, 0] + share * (coefficients[index, 0] - average[index, 0])
-    own_stance = walk.stance if np.isfinite(walk.stance) else stance
+    own_stance = walk.stance - EARLIER_OFF if np.isfinite(walk.stance) else stance
     return ArrangedCycle(
         walk.gait.speed, walk.gait.step_frequency, float(np.clip(own_stance, 0.56, 0.70)), coefficients, (walk.file,)
     )

@@ -1,13 +1,13 @@
 """Who was captured, from the `actor.yaml` of a folder of clips.
 
-    sex: female            # or male: decides the body
-    height: 1.72           # m
-    weight: 65             # kg
-    age: 31                # years
-    licence: CC BY 4.0     # what others may do with these captures
-    source: our laboratory, 2025
-    complete: true         # fill the grid of speed and step frequency with the gait model
-    comfort_speed: 1.25    # m/s, optional: else the median speed of the clips
+sex: female            # or male: decides the body
+height: 1.72           # m
+weight: 65             # kg
+age: 31                # years
+licence: CC BY 4.0     # what others may do with these captures
+source: our laboratory, 2025
+complete: true         # fill the grid of speed and step frequency with the gait model
+comfort_speed: 1.25    # m/s, optional: else the median speed of the clips
 """
 
 from __future__ import annotations

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from stimuli.clip import Clip, world_positions
-from stimuli.cycle import Cycle, extract_cycle, seam_gaps
-from stimuli.events import GaitError, GaitMeasures, foot_paths, measure
+from stimuli.cycle import Cycle, cycle_and_measures, seam_gaps
+from stimuli.events import GaitError, GaitMeasures, foot_paths
 from stimuli.gait import Gait
 from stimuli.importing.errors import ImportingError
 from stimuli.importing.signals import leg_length, walk_signals
@@ -43,23 +43,28 @@ class CapturedWalk:
 
     coefficients: (S, C) signals of the gait model, nan where the capture holds none
     bones:        (4,) m, left thigh and shank, right thigh and shank
-    gait:         of the loop; measured: over all steady strides of the clip
+    gait:         over all steady strides of the clip, at which the cycle is drawn; loop: of the looped stride alone
     """
 
     file: str
     format: str
     gait: Gait
+    loop: Gait
     measured: GaitMeasures
     stance: float  # share of the cycle, nan where no toe-off was found
     coefficients: Floats
     leg_length: float  # m
     bones: Floats
-    marker_based: bool
+    names: str  # the table of joint names that fitted, "markers" for a skeleton made from markers
     pose_difference: float  # m, between the joined frames
     seam: float  # m
     seam_velocity: float  # share of the fastest joint's speed
     frames: tuple[int, int]  # the joined frames, from 0
     warnings: tuple[str, ...]
+
+    @property
+    def marker_based(self) -> bool:
+        return self.names == "markers"
 
 
 def read_walks(folder: Path) -> list[CapturedWalk]:
@@ -82,8 +87,7 @@ def read_walk(path: Path) -> CapturedWalk:
     clip = read_clip(path)
     _check_clip(clip, path)
     try:
-        measured = measure(clip)
-        cycle = extract_cycle(clip)
+        cycle, measured = cycle_and_measures(clip)
     except GaitError as error:
         raise ImportingError(f"{path}: {str(error).removeprefix(clip.name + ': ')}") from error
     _check_walk(clip, cycle, path)
@@ -93,13 +97,14 @@ def read_walk(path: Path) -> CapturedWalk:
     return CapturedWalk(
         file=path.name,
         format=clip.source.format,
-        gait=cycle.gait,
+        gait=measured.gait,
+        loop=cycle.gait,
         measured=measured,
         stance=float(np.mean(stance)) if stance else float("nan"),
         coefficients=walk_signals(cycle),
         leg_length=leg_length(cycle),
         bones=np.array([float(np.linalg.norm(cycle.offsets[cycle.joints.index(part)])) for part in parts]),
-        marker_based=clip.source.names == "markers",
+        names=clip.source.names,
         pose_difference=cycle.provenance.pose_difference,
         seam=seam,
         seam_velocity=seam_velocity,
@@ -136,16 +141,31 @@ def _check_walk(clip: Clip, cycle: Cycle, path: Path) -> None:
         raise ImportingError(
             f"{path}: goes at {speed:.2f} m/s, which is no walk ({SPEEDS[0]:g} to {SPEEDS[1]:g} m/s); check unit_to_m"
         )
-    heading = foot_paths(clip).heading
-    source = cycle.provenance
-    start, end = heading[source.first_frame], heading[source.last_frame]
-    turn = float(abs(np.arctan2(start[0] * end[1] - start[1] * end[0], start @ end)))
+    positions = world_positions(clip)
+    turn = _turn(clip, positions, cycle.provenance.first_frame, cycle.provenance.last_frame)
     if turn > STRAIGHT:
         raise ImportingError(
             f"{path}: turns by {np.degrees(turn):.0f} degrees within a stride; cut it to a straight walk"
         )
-    if sides_swapped(world_positions(clip), clip.roles):
+    if sides_swapped(positions, clip.roles):
         raise ImportingError(f"{path}: left and right are swapped or the file is mirrored; export it anew")
+
+
+def _turn(clip: Clip, positions: Floats, first: int, last: int) -> float:
+    """rad by which both the pelvis' facing and the way turn between two frames; the smaller, as each alone misleads.
+
+    In a clip of little more than a stride the facing still holds the pelvis' own rotation, and the way the sway.
+    """
+    heading = foot_paths(clip, positions).heading
+    way = positions[:, clip.roles["hips"]][:, [0, 2]]
+    middle = (first + last) // 2
+    halves = way[middle] - way[first], way[last] - way[middle]
+    return min(_angle(heading[first], heading[last]), 2.0 * _angle(*halves))
+
+
+def _angle(first: Floats, second: Floats) -> float:
+    """rad between two directions (2,) on the ground."""
+    return float(abs(np.arctan2(first[0] * second[1] - first[1] * second[0], first @ second)))
 
 
 def _check_one_person(walks: list[CapturedWalk], folder: Path) -> None:

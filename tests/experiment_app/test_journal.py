@@ -36,6 +36,8 @@ def test_a_run_leaves_a_header_every_answer_every_key_and_every_trial(tmp_path):
     assert torn == 0
     assert lines[0]["kind"] == "header"
     assert lines[0]["study_text"] == short().text
+    assert lines[0]["walkers"] == {"F1": "modelled", "M1": "modelled", "T1": "modelled", "T2": "modelled"}
+    assert lines[0]["keys"] == {"lower": "left", "raise": "right", "confirm": "enter", "break": "b"}
     assert (kinds["answer"], kinds["trial"], kinds["begin"]) == (3, 6, 6)
     assert kinds["key"] >= 6 * 3
     assert trials(lines) == [1, 2, 3, 4]

@@ -1,0 +1,64 @@
+"""Imported bodies: where they are kept, one GLB file each. The folder is that of the user's data, or GAITLAB_BODIES."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+from stimuli.body_files.errors import BodyError
+from stimuli.point_light import FIGURES
+
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
+TAKEN = ("woman", "man", *FIGURES)
+
+
+def library_folder() -> Path:
+    """Where imported bodies are kept: GAITLAB_BODIES, or the folder of this user's data."""
+    given = os.environ.get("GAITLAB_BODIES")
+    if given:
+        return Path(given)
+    if sys.platform == "win32":
+        return Path(os.environ.get("APPDATA", Path.home())) / "gaitlab" / "bodies"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Application Support" / "gaitlab" / "bodies"
+    return Path(os.environ.get("XDG_DATA_HOME", Path.home() / ".local" / "share")) / "gaitlab" / "bodies"
+
+
+def imported_names() -> tuple[str, ...]:
+    """Names of imported bodies, in order; none where there is no library."""
+    try:
+        found = sorted(path.stem for path in library_folder().glob("*.glb"))
+    except OSError:
+        return ()
+    return tuple(name for name in found if NAME.fullmatch(name) and name not in TAKEN)
+
+
+def path_of(name: str) -> Path:
+    """The file of an imported body."""
+    return library_folder() / f"{name}.glb"
+
+
+def stored(data: bytes, name: str, replace: bool = False) -> Path:
+    """Writes the bytes of a GLB file into the library, whole or not at all, and returns the file."""
+    if not NAME.fullmatch(name):
+        raise BodyError(f"{name!r} is no name for a body; use letters, digits, - and _, as lab7_anna")
+    if name in TAKEN:
+        raise BodyError(f"{name} comes with gaitlab; choose another name")
+    if not replace and name in imported_names():
+        raise BodyError(f"there is a body {name} already; choose another name, or say --replace")
+    folder = library_folder()
+    folder.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(prefix=".", suffix=".part", dir=folder)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.replace(temporary, path_of(name))
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+    return path_of(name)

@@ -1,0 +1,83 @@
+"""`gaitlab compare-methods`: the report, its verdict on the published order, and sentences for bad input."""
+
+import csv
+from pathlib import Path
+
+import pytest
+
+from analysis.errors import AnalysisError
+from analysis.method_comparison import RebuildingError, published_order, rebuilding_anova
+from experiment_app.command import run
+
+CMU = Path(__file__).parents[2].parent / "shared" / "mocap" / "bvh" / "cmu"
+
+
+def test_the_report_has_every_method_at_three_speeds_and_pictures(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert run(["compare-methods", "F2", "M1", "M2", "--out", "report"]) == 0
+    rows = list(csv.DictReader((tmp_path / "report" / "methods.csv").open()))
+    methods = {"captured", "timewarp", "fourier", "pca", "poulaine", "blend"}
+    assert {(row["person"], row["method"]) for row in rows} == {(p, m) for p in ("F2", "M1", "M2") for m in methods}
+    assert len(rows) == 3 * 3 * 6
+    for name in ("points", "rebuilding", "error", "films"):
+        assert (tmp_path / "report" / f"{name}.png").stat().st_size > 5000
+    text = (tmp_path / "report" / "report.md").read_text()
+    assert "reduction factor" in text
+    assert "from 0 to 10 km/h" in text
+    assert "drawn ones" in text
+    assert "published order Hermite, PCHIP, spline" in capsys.readouterr().out
+
+
+@pytest.mark.skipif(not CMU.is_dir(), reason="the shared captures are not beside the checkout")
+def test_captures_named_are_those_the_rebuilding_is_tested_on(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert run(["compare-methods", "F2", "--captures", str(CMU / "cmu_07_01.bvh"), "--out", "report"]) == 0
+    assert "three people" in capsys.readouterr().out
+
+
+def errors_of(values):
+    """Three people's RMSE: (points, interpolation) -> m, a little different for everyone."""
+    return [
+        RebuildingError(f"P{person}", "w", "left", points, way, value * (1 + 0.02 * person) + 1e-4 * ((person * i) % 3))
+        for person in range(4)
+        for i, ((points, way), value) in enumerate(values.items())
+    ]
+
+
+PUBLISHED = {
+    (4, "spline"): 0.05, (4, "pchip"): 0.03, (4, "hermite"): 0.025,
+    (5, "spline"): 0.04, (5, "pchip"): 0.02, (5, "hermite"): 0.015,
+}  # fmt: skip
+
+
+def test_data_in_the_published_order_agree():
+    errors = errors_of(PUBLISHED)
+    sentences = published_order(errors, rebuilding_anova(errors))
+    assert "DO NOT" not in sentences[0] + sentences[1]
+
+
+def test_data_in_another_order_are_said_to_disagree():
+    turned = {key: 0.06 - value for key, value in PUBLISHED.items()}
+    errors = errors_of(turned)
+    sentences = published_order(errors, rebuilding_anova(errors))
+    assert "DO NOT agree" in sentences[0]
+    assert "DO NOT agree" in sentences[1]
+
+
+def test_two_people_are_too_few():
+    with pytest.raises(AnalysisError, match="three people"):
+        rebuilding_anova([error for error in errors_of(PUBLISHED) if error.person in ("P0", "P1")])
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ([], "name at least one actor"),
+        (["Nobody"], "no actor"),
+        (["F2", "--captures", "nowhere"], "no such folder"),
+    ],
+)
+def test_bad_input_is_a_sentence(tmp_path, monkeypatch, capfd, words, sentence):
+    monkeypatch.chdir(tmp_path)
+    assert run(["compare-methods", *words]) == 2
+    assert sentence in capfd.readouterr().err
