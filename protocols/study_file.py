@@ -84,7 +84,10 @@ def find_study(study: str) -> tuple[str, bytes]:
         return str(path), path.read_bytes()
     if study in shipped_studies():
         return f"{study}.yaml", (files("protocols") / "studies" / f"{study}.yaml").read_bytes()
-    near = difflib.get_close_matches(study, shipped_studies(), n=1)
+    if path.is_dir():
+        raise FileNotFoundError(f"{study} is a folder; name a study file in it, as {path / 'my_study.yaml'}.")
+    beside = [p.name for p in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
+    near = difflib.get_close_matches(path.name, [*shipped_studies(), *beside], n=1)
     hint = f" Did you mean {near[0]}?" if near else ""
     raise FileNotFoundError(
         f"{study}: there is no such file and no shipped study of that name "

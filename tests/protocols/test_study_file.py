@@ -109,6 +109,14 @@ def test_an_unknown_study_names_the_shipped_ones():
         find_study("walk_ratoi")
 
 
+def test_a_folder_or_a_misspelt_ending_says_what_to_name(tmp_path):
+    (tmp_path / "good.yaml").write_text("study: a\n")
+    with pytest.raises(FileNotFoundError, match="is a folder; name a study file in it"):
+        find_study(str(tmp_path))
+    with pytest.raises(FileNotFoundError, match=r"Did you mean good.yaml\?"):
+        find_study(str(tmp_path / "good.yml"))
+
+
 def test_yes_and_no_are_words_and_0_8_is_a_number():
     file = parse_study("s.yaml", shipped_text())
     assert "yes" in file.study.participants.questions[2].options  # type: ignore[union-attr]
