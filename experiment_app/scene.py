@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 View = Literal["three_quarter", "side", "front", "legs"]
-Ground = Literal["open_ground", "treadmill"]
+Ground = Literal["open_ground", "treadmill", "plain"]
 
 
 @dataclass(frozen=True)
@@ -14,7 +14,7 @@ class Walker:
     """One walker at one instant.
 
     actor:          name of the actor whose motion is shown.
-    body:           name of the body, or "" for the actor's own.
+    body:           name of a body or of a figure without one (point_light, stick_figure, ...); "" the actor's own.
     speed:          m/s; step_frequency: steps/min.
     phase:          in [0, 1), 0 at right heel strike.
     distance:       m walked along +Z since the walker was placed (0 on a treadmill).
@@ -44,6 +44,22 @@ class Camera:
     distance: float = 5.0
     height: float = 1.6
     field_of_view: float = 30.0
+
+
+@dataclass(frozen=True)
+class Marks:
+    """How point lights and stick figures look; a scene with nothing else shows them on a plain field.
+
+    dot_size:   diameter of a dot, degrees of visual angle; line_width: of a stick, the same.
+    brightness: of dots and sticks, linear light, 1 is the display's white; background: of the plain field.
+    seed:       of the places of a scrambled point light.
+    """
+
+    dot_size: float = 0.15
+    line_width: float = 0.1
+    brightness: float = 1.0
+    background: float = 0.0
+    seed: int = 0
 
 
 @dataclass(frozen=True)
@@ -96,10 +112,18 @@ class Page:
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything visible: walkers on a ground from a camera, or a page, or both; and one line at the bottom."""
+    """Everything visible: walkers on a ground from a camera, or a page, or both; and one line at the bottom.
+
+    screen_angle: vertical visual angle of the whole picture for the viewer, degrees; 0 takes the camera's field of
+                  view, which is the same when the perspective is true.
+    lod:          level of detail that all walkers are forced to, 0 the finest; None chooses by size on the screen.
+    """
 
     walkers: tuple[Walker, ...] = ()
     camera: Camera = field(default_factory=Camera)
     ground: Ground = "open_ground"
     page: Page | None = None
     caption: str = ""
+    marks: Marks = field(default_factory=Marks)
+    screen_angle: float = 0.0
+    lod: int | None = None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from experiment_app.scene import Box, Camera, Line, Page, Row, Scene, Walker
 from protocols.adjustment import AdjustmentTrial
 from protocols.form import Choice, Form
@@ -14,7 +16,7 @@ def stage(session: Session) -> Scene:
     """The scene of a session at its present time."""
     if session.overlay is not None:
         scene = _trial_scene(session) if session.trial is not None else Scene(page=None)
-        return Scene(scene.walkers, scene.camera, scene.ground, _overlay_page(session, session.overlay), caption="")
+        return replace(scene, page=_overlay_page(session, session.overlay), caption="")
     if isinstance(session.stage, AdjustmentTrial):
         return _trial_scene(session)
     if isinstance(session.stage, Interval):

@@ -7,9 +7,12 @@ from functools import cache
 from experiment_app.render.drawn import DrawnWalker
 from experiment_app.scene import Scene, Walker
 from stimuli.actors import Actor, load_actor
-from stimuli.bodies import load_body, scaled
+from stimuli.bodies import load_body, scaled, shipped_names
 from stimuli.body import Body
+from stimuli.body_retarget import on_its_own_soles
 from stimuli.measure import delivered_gait
+from stimuli.point_light import FIGURES, figure_lines, resting
+from stimuli.skeleton import Floats
 from stimuli.walker import drawn_pose, skin_matrices
 
 
@@ -17,22 +20,38 @@ from stimuli.walker import drawn_pose, skin_matrices
 def cast(actor: str, body: str) -> tuple[Actor, Body]:
     """The actor, and the body at the actor's height that wears the motion; body "" is the actor's own.
 
-    Raises ActorError or BodyError for a name that is not known.
+    A figure without a body (point_light, stick_figure, ...) moves on the joints of the actor's own body. Raises
+    ActorError or BodyError for a name that is not known.
     """
-    chosen = load_actor(actor, load_body(body)) if body else load_actor(actor)
-    return chosen, scaled(load_body(chosen.body), chosen.height)
+    if not body or body in FIGURES:
+        chosen = load_actor(actor)
+        return chosen, scaled(load_body(chosen.body), chosen.height)
+    worn = load_body(body)
+    chosen = load_actor(actor, worn)
+    grown = scaled(worn, chosen.height)
+    return (chosen if body in shipped_names() else on_its_own_soles(chosen, grown)), grown
+
+
+@cache
+def _resting_markers(actor: str) -> Floats:
+    chosen, body = cast(actor, "")
+    return resting(body.skeleton, chosen.height)
 
 
 def drawn_walkers(scene: Scene) -> tuple[DrawnWalker, ...]:
     """Every walker of the scene with the matrices of its pose, in the world at its place and distance."""
-    return tuple(_drawn(walker, scene.ground == "treadmill") for walker in scene.walkers)
+    return tuple(_drawn(walker, scene.ground == "treadmill", scene.marks.seed) for walker in scene.walkers)
 
 
-def _drawn(walker: Walker, on_the_spot: bool) -> DrawnWalker:
+def _drawn(walker: Walker, on_the_spot: bool, seed: int) -> DrawnWalker:
     actor, body = cast(walker.actor, walker.body)
     pose = drawn_pose(actor, walker.speed, walker.step_frequency, walker.phase)
     x, z = walker.place
-    return DrawnWalker(body, skin_matrices(actor, pose), (x, 0.0, z if on_the_spot else z + walker.distance))
+    matrices = skin_matrices(actor, pose)
+    lines = None
+    if walker.body in FIGURES:
+        lines = figure_lines(walker.body, _resting_markers(walker.actor), matrices, actor.height, seed)
+    return DrawnWalker(body, matrices, (x, 0.0, z if on_the_spot else z + walker.distance), lines)
 
 
 def measured_gait(scene: Scene) -> dict[str, float]:

@@ -121,7 +121,7 @@ class Stimulus(Part):
     actor: Text = Field(description="An actor's name, or $factor.")
     speed: Reference | Speed = Field(description="Walking speed, m/s, or $factor.")
     body: Text | None = Field(None, description="A body's name or $factor; the actor's own when left out.")
-    ground: Literal["open_ground", "treadmill"] = "open_ground"
+    ground: Literal["open_ground", "treadmill", "plain"] = "open_ground"
     camera: CameraView = CameraView()
 
 

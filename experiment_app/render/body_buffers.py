@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from experiment_app.render.pictures import covers, has_pictures, layers
 from stimuli.body import Body, Surface
 
 VERTEX = np.dtype(
@@ -49,20 +51,34 @@ CLOTH = (0.0, 0.16, 0.15)
 class BodyOnGpu:
     """One level of detail of one body.
 
-    lit, shadow: vertex arrays for the two passes; colours, finishes: bytes of the shader's material arrays.
+    lit, shadow: vertex arrays for the passes; parts: for the part map, made when first asked for.
+    colours, finishes: bytes of the shader's material arrays.
+    pictures, covers: what a body with pictures wears, else None and empty.
     """
 
     body: Body
     lit: moderngl.VertexArray
     shadow: moderngl.VertexArray
-    buffers: tuple[moderngl.Buffer, moderngl.Buffer]
+    parts: list[moderngl.VertexArray]
+    buffers: tuple[moderngl.Buffer, ...]
     colours: bytes
     finishes: bytes
+    pictures: moderngl.TextureArray | None = None
+    covers: bytes = b""
 
     def release(self) -> None:
         """Frees the GPU's memory."""
-        for thing in (self.lit, self.shadow, *self.buffers):
-            thing.release()
+        for thing in (self.lit, self.shadow, *self.parts, *self.buffers, self.pictures):
+            if thing is not None:
+                thing.release()
+
+    def for_parts(self, context: moderngl.Context, program: moderngl.Program) -> moderngl.VertexArray:
+        """The vertex array of the part map's pass."""
+        if not self.parts:
+            self.parts.append(
+                context.vertex_array(program, [(self.buffers[0], SHADOW_FORMAT, *SHADOW_NAMES)], self.buffers[1])
+            )
+        return self.parts[0]
 
 
 def packed(surfaces: tuple[Surface, ...]) -> tuple[NDArray[np.void], NDArray[np.uint32]]:
@@ -83,6 +99,12 @@ def packed(surfaces: tuple[Surface, ...]) -> tuple[NDArray[np.void], NDArray[np.
     return vertices, np.concatenate(triangles)
 
 
+def picture_places(surfaces: tuple[Surface, ...]) -> NDArray[np.float32]:
+    """(V, 2) places in the pictures, of all surfaces together; zero without a picture."""
+    parts = [s.picture_at if s.picture_at is not None else np.zeros((len(s.positions), 2)) for s in surfaces]
+    return np.concatenate(parts).astype(np.float32)
+
+
 def materials(surfaces: tuple[Surface, ...]) -> tuple[bytes, bytes]:
     """Colours (24, 4: linear rgb, roughness) and finishes (24, 4) as float32 bytes."""
     if len(surfaces) > MOST_MATERIALS:
@@ -99,10 +121,14 @@ class BodyBuffers:
     """Every body level that was drawn, the least recently drawn given up first beyond MOST_KEPT."""
 
     def __init__(
-        self, context: moderngl.Context, lit_program: moderngl.Program, shadow_program: moderngl.Program
+        self,
+        context: moderngl.Context,
+        lit_program: moderngl.Program,
+        shadow_program: moderngl.Program,
+        textured_program: Callable[[], moderngl.Program],
     ) -> None:
         self._context = context
-        self._programs = (lit_program, shadow_program)
+        self._lit, self._shadow, self._textured = lit_program, shadow_program, textured_program
         self._kept: dict[tuple[int, int], BodyOnGpu] = {}
         self.uploads = 0
 
@@ -129,10 +155,15 @@ class BodyBuffers:
         vertices, triangles = packed(surfaces)
         vertex_buffer = self._context.buffer(vertices.tobytes())
         index_buffer = self._context.buffer(triangles.tobytes())
-        lit, shadow = (
-            self._context.vertex_array(program, [(vertex_buffer, form, *names)], index_buffer)
-            for program, form, names in zip(
-                self._programs, (LIT_FORMAT, SHADOW_FORMAT), (LIT_NAMES, SHADOW_NAMES), strict=True
-            )
-        )
-        return BodyOnGpu(body, lit, shadow, (vertex_buffer, index_buffer), *materials(surfaces))
+        layout: list[tuple[object, ...]] = [(vertex_buffer, LIT_FORMAT, *LIT_NAMES)]
+        buffers = [vertex_buffer, index_buffer]
+        program, pictures, cover = self._lit, None, b""
+        if has_pictures(surfaces):
+            program = self._textured()
+            pictures, numbers = layers(self._context, surfaces)
+            cover = covers(surfaces, numbers, MOST_MATERIALS)
+            buffers.append(self._context.buffer(picture_places(surfaces).tobytes()))
+            layout.append((buffers[2], "2f4", "picture_at"))
+        lit = self._context.vertex_array(program, layout, index_buffer)
+        shadow = self._context.vertex_array(self._shadow, [(vertex_buffer, SHADOW_FORMAT, *SHADOW_NAMES)], index_buffer)
+        return BodyOnGpu(body, lit, shadow, [], tuple(buffers), *materials(surfaces), pictures, cover)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -33,12 +34,19 @@ class Viewpoint:
     azimuth:     radians, direction from walker to eye around +Y, 0 along +Z, positive towards +X.
     half_height: tangent of half the vertical field of view.
     matrix:      (4, 4) world to clip space, column vectors (clip = matrix @ point).
+    inverse:     (4, 4) clip space to world.
     """
 
     eye: Floats
     azimuth: float
     half_height: float
     matrix: Floats
+    inverse: Floats
+
+    @cached_property
+    def matrix_bytes(self) -> bytes:
+        """`matrix` as the shaders take it, made once for all passes of a frame."""
+        return as_uniform(self.matrix)
 
     def pixels_per_metre(self, point: Sequence[float], picture_height: int) -> float:
         """Size on the screen of a metre at a point (x, y, z) m, roughly."""
@@ -74,8 +82,9 @@ def place_camera(camera: Camera, aspect: float, stature: float, walker: tuple[fl
     pitch = 0.5 * (above + below)
     forward = np.array([0.0, math.sin(pitch), 0.0]) - math.cos(pitch) * outwards
     half_height = math.tan(half_angle) / min(1.0, aspect)
-    matrix = perspective(half_height, aspect) @ look(eye, forward)
-    return Viewpoint(eye, azimuth, half_height, matrix)
+    turn = look(eye, forward)
+    matrix = perspective(half_height, aspect) @ turn
+    return Viewpoint(eye, azimuth, half_height, matrix, _from_clip(half_height, aspect, turn, eye))
 
 
 def look(eye: Floats, forward: Floats) -> Floats:
@@ -88,6 +97,20 @@ def look(eye: Floats, forward: Floats) -> Floats:
     matrix = np.eye(4)
     matrix[:3, :3] = (right, above, (-x, -y, -z))
     matrix[:3, 3] = -matrix[:3, :3] @ eye
+    return matrix
+
+
+def _from_clip(half_height: float, aspect: float, turn: Floats, eye: Floats) -> Floats:
+    """(4, 4) inverse of perspective @ look, written out: a third of the time of a general inverse."""
+    matrix = np.zeros((4, 4))
+    rows = turn[:3, :3]
+    ahead = 0.5 * (NEAR - FAR) / (FAR * NEAR)
+    nearness = 0.5 * (FAR + NEAR) / (FAR * NEAR)
+    matrix[:3, 0] = half_height * aspect * rows[0]
+    matrix[:3, 1] = half_height * rows[1]
+    matrix[:3, 2] = ahead * eye
+    matrix[:3, 3] = nearness * eye - rows[2]
+    matrix[3, 2], matrix[3, 3] = ahead, nearness
     return matrix
 
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
 from experiment_app.render.drawn import DrawnWalker
+from stimuli.body import Body
 from stimuli.skeleton import JOINTS, Floats
 
 BALLS: tuple[tuple[str, tuple[float, float, float], float], ...] = (
@@ -43,8 +45,14 @@ def fill_occluders(rows: Floats, walkers: Sequence[DrawnWalker]) -> None:
     """
     for row, walker in zip(rows, walkers, strict=False):
         stature = walker.body.stature
-        points = walker.body.skeleton.positions[_JOINTS] + _OFFSETS * stature
-        turned = np.einsum("nij,nj->ni", walker.matrices[_JOINTS, :, :3], points)
+        matrices = walker.matrices[_JOINTS]
         row[0] = (*walker.place, HALF_SIZE * stature)
-        row[1:, :3] = turned + walker.matrices[_JOINTS, :, 3] + walker.place
+        row[1:, :3] = (matrices @ _balls(walker.body))[..., 0] + walker.place
         row[1:, 3] = _RADII * stature
+
+
+@lru_cache(maxsize=2048)
+def _balls(body: Body) -> Floats:
+    """(balls, 4, 1) float32: x, y, z (m) of the balls' middles in the bind pose, and 1."""
+    points = body.skeleton.positions[_JOINTS] + _OFFSETS * body.stature
+    return np.column_stack([points, np.ones(len(points))])[..., None].astype(np.float32)

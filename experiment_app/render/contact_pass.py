@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import moderngl
 import numpy as np
 
-from experiment_app.render.cameras import Viewpoint, as_uniform
+from experiment_app.render.cameras import Viewpoint
 from experiment_app.render.contact import TEXELS, fill_occluders
 from experiment_app.render.drawn import DrawnWalker
-from experiment_app.render.programs import build
+from experiment_app.render.programs import build, set_if_used
 
 OCCLUDERS_UNIT = 1
 LIFT = 0.0015  # m above the ground, so that the square is not hidden by the ground itself
@@ -38,10 +38,10 @@ class ContactPass:
         assert self._texture is not None
         self._texture.write(self._rows[: len(walkers)], viewport=(0, 0, TEXELS, len(walkers)))
         self._texture.use(OCCLUDERS_UNIT)
-        self._program["occluders"].value = OCCLUDERS_UNIT
-        self._program["lift"].value = LIFT
-        self._program["area"].value = area
-        self._program["world_to_clip"].write(as_uniform(viewpoint.matrix))
+        set_if_used(self._program, "occluders", OCCLUDERS_UNIT)
+        set_if_used(self._program, "lift", LIFT)
+        set_if_used(self._program, "area", area)
+        self._program["world_to_clip"].write(viewpoint.matrix_bytes)
         self._context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         self._context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
         self._context.fbo.depth_mask = False

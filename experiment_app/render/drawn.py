@@ -18,8 +18,11 @@ class DrawnWalker:
     place:    (x, y, z) m, where that frame's origin is in the world.
               On open ground z includes the distance walked; y = 0 is the surface walked upon,
               which on the treadmill is the top of the belt.
+    lines:    (N, 2, 3) m, ends of lines in the walker's frame that are drawn instead of the body; a line whose
+              ends are the same place is a dot. None draws the body.
     """
 
     body: Body
     matrices: Floats
     place: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    lines: Floats | None = None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import moderngl
-import numpy as np
 
 from experiment_app.render.cameras import Viewpoint, as_uniform
 from experiment_app.render.light import CONSTANTS, Sunlight
@@ -36,7 +35,7 @@ class GroundPass:
     ) -> None:
         """Height: y of the floor, m; machine: centre x, z and half sizes x, z (m) of what stands on it."""
         self._context.enable_only(moderngl.DEPTH_TEST)
-        self._floor["world_to_clip"].write(as_uniform(viewpoint.matrix))
+        self._floor["world_to_clip"].write(viewpoint.matrix_bytes)
         set_if_used(self._floor, "eye_position", tuple(viewpoint.eye))
         set_if_used(self._floor, "ground_height", height)
         set_if_used(self._floor, "machine", machine)
@@ -47,7 +46,7 @@ class GroundPass:
         """Fills what nothing has covered; last, so that covered pixels cost nothing."""
         self._context.enable_only(moderngl.DEPTH_TEST)
         self._context.depth_func = "<="
-        set_if_used(self._sky, "clip_to_world", as_uniform(np.linalg.inv(viewpoint.matrix)))
+        set_if_used(self._sky, "clip_to_world", as_uniform(viewpoint.inverse))
         set_light(self._sky, sunlight, viewpoint.eye)
         self._screen.render(moderngl.TRIANGLES, vertices=3)
         self._context.depth_func = "<"

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from experiment_app.render.cameras import look, orthographic
+from experiment_app.render.cameras import as_uniform, look, orthographic
 from experiment_app.render.drawn import DrawnWalker
 from experiment_app.scene import Ground
 from stimuli.skeleton import Floats
@@ -43,6 +44,7 @@ class Lights:
 
 LIGHTS: dict[Ground, Lights] = {
     "open_ground": Lights(sun=(1.12, 1.05, 0.95), sky=(0.42, 0.46, 0.52), bounce=(0.25, 0.235, 0.21)),
+    "plain": Lights(sun=(0.92, 0.90, 0.86), sky=(0.58, 0.59, 0.60), bounce=(0.30, 0.295, 0.29)),
     "treadmill": Lights(sun=(0.92, 0.90, 0.86), sky=(0.58, 0.59, 0.60), bounce=(0.30, 0.295, 0.29)),
 }
 
@@ -69,6 +71,11 @@ class Sunlight:
     world_to_map: Floats
     extent: Floats
 
+    @cached_property
+    def map_bytes(self) -> bytes:
+        """`world_to_map` as the shaders take it, made once for all programs of a frame."""
+        return as_uniform(self.world_to_map)
+
 
 CLIP_TO_MAP = np.array([[0.5, 0, 0, 0.5], [0, 0.5, 0, 0.5], [0, 0, 0.5, 0.5], [0, 0, 0, 1.0]])
 
@@ -87,10 +94,16 @@ def fit_sunlight(ground: Ground, view_azimuth: float, walkers: Sequence[DrawnWal
     """
     to_sun = direction_to_sun(view_azimuth)
     turn = look(np.zeros(3), -to_sun)
-    middles = np.array([(w.place[0], w.place[1] + 0.5 * w.body.stature, w.place[2]) for w in walkers])
-    reach = REACH * np.array([[walker.body.stature] for walker in walkers])
-    seen = middles @ turn[:3, :3].T
-    low, high = (seen - reach).min(axis=0), (seen + reach).max(axis=0)
+    if len(walkers) == 1:
+        x, y, z = walkers[0].place
+        stature = walkers[0].body.stature
+        middle = turn[:3, :3] @ (x, y + 0.5 * stature, z)
+        low, high = middle - REACH * stature, middle + REACH * stature
+    else:
+        middles = np.array([(w.place[0], w.place[1] + 0.5 * w.body.stature, w.place[2]) for w in walkers])
+        reach = REACH * np.array([[walker.body.stature] for walker in walkers])
+        seen = middles @ turn[:3, :3].T
+        low, high = (seen - reach).min(axis=0), (seen + reach).max(axis=0)
     if len(corners):
         more = corners @ turn[:3, :3].T
         low, high = np.minimum(low, more.min(axis=0)), np.maximum(high, more.max(axis=0))

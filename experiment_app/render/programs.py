@@ -37,10 +37,19 @@ def build(
 
 
 def set_if_used(program: moderngl.Program, name: str, value: object) -> None:
-    """Sets a uniform; a driver may have removed one that does not change the result."""
-    if name in program:
-        uniform = program[name]
+    """Sets a uniform; a driver may have removed one that does not change the result. A value it has is not sent again.
+
+    What was sent is kept on the program (its `extra`), so a uniform set here must not be set otherwise too.
+    """
+    sent = program.extra
+    if sent is None:
+        sent = program.extra = {}
+    if sent.get(name) == value:
+        return
+    uniform = program.get(name, None)
+    if uniform is not None:
         if isinstance(value, bytes):
             uniform.write(value)
         else:
             uniform.value = value
+    sent[name] = value

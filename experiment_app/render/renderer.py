@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from experiment_app.render.drawn import DrawnWalker
 from experiment_app.render.pages import PagePainter
+from experiment_app.render.part_map import PartMap, PartMapTarget
 from experiment_app.render.picture import Picture
 from experiment_app.render.stage import Stage
 from experiment_app.scene import Page, Scene
@@ -25,7 +26,9 @@ class Renderer:
 
     def __init__(self, context: moderngl.Context, size: tuple[int, int], pixel_ratio: float, samples: int) -> None:
         self._picture = Picture(context, size, samples)
+        self._context = context
         self._stage = Stage(context)
+        self._parts: PartMapTarget | None = None
         self._pages = PagePainter(context, size, pixel_ratio)
         self._asked = (tuple(size), pixel_ratio)
 
@@ -38,6 +41,24 @@ class Renderer:
     def uploads(self) -> int:
         """How many body levels were uploaded to the GPU so far."""
         return self._stage.uploads
+
+    @property
+    def levels(self) -> tuple[int, ...]:
+        """The level of detail of every walker of the last frame, 0 the finest, -1 for one without a body."""
+        return self._stage.levels
+
+    def draw_parts(self, frames_ago: int = 0) -> PartMap | None:
+        """Draws the body-part map of the frame drawn last, and returns it or the one of the frame before.
+
+        With frames_ago 1 nothing is waited for: that map's bytes have arrived while this frame was drawn. None when
+        there is none yet. Call it after `draw`; what is bound afterwards is the map.
+        """
+        if self._parts is None or self._parts.size != self._picture.size:
+            if self._parts is not None:
+                self._parts.release()
+            self._parts = PartMapTarget(self._context, self._picture.size)
+        self._stage.draw_parts(self._parts)
+        return self._parts.take(frames_ago)
 
     def draw(self, scene: Scene, drawn: Sequence[DrawnWalker], target: moderngl.Framebuffer) -> None:
         """Draws the scene over the whole target; drawn: scene.walkers in the same order, posed.
@@ -75,5 +96,7 @@ class Renderer:
     def release(self) -> None:
         """Frees the GPU's memory."""
         self._pages.release()
+        if self._parts is not None:
+            self._parts.release()
         self._stage.release()
         self._picture.release()

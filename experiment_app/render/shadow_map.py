@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import moderngl
 
-from experiment_app.render.cameras import as_uniform
 from experiment_app.render.light import Sunlight
 from experiment_app.render.programs import set_if_used
 from stimuli.skeleton import Floats
@@ -33,7 +32,7 @@ class ShadowMap:
         self._frame.use()
         self._frame.viewport = (0, 0, SIZE, SIZE)
         self._frame.clear(depth=1.0)
-        self._context.enable_only(moderngl.DEPTH_TEST)
+        self._context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
 
     def bind(self) -> None:
         """Puts the map where the shaders look for it."""
@@ -57,9 +56,9 @@ def set_light(program: moderngl.Program, sunlight: Sunlight, eye: Floats) -> Non
     set_if_used(program, "sun_colour", sunlight.lights.sun)
     set_if_used(program, "sky_colour", sunlight.lights.sky)
     set_if_used(program, "bounce_colour", sunlight.lights.bounce)
-    set_if_used(program, "eye", tuple(eye))
-    set_if_used(program, "to_sun", tuple(sunlight.to_sun))
-    set_if_used(program, "world_to_light", as_uniform(sunlight.world_to_map))
-    set_if_used(program, "light_extent", tuple(sunlight.extent))
+    set_if_used(program, "eye", tuple(eye.tolist()))
+    set_if_used(program, "to_sun", tuple(sunlight.to_sun.tolist()))
+    set_if_used(program, "world_to_light", sunlight.map_bytes)
+    set_if_used(program, "light_extent", tuple(sunlight.extent.tolist()))
     set_if_used(program, "shadow_map", MAP_UNIT)
     set_if_used(program, "shadow_depth", DEPTH_UNIT)

@@ -7,11 +7,13 @@ from collections.abc import Sequence
 import moderngl
 import numpy as np
 
-from experiment_app.render.cameras import place_camera
+from experiment_app.render.cameras import Viewpoint, place_camera
 from experiment_app.render.contact_pass import EVERYWHERE, ContactPass
 from experiment_app.render.drawn import DrawnWalker
 from experiment_app.render.ground_pass import GroundPass
 from experiment_app.render.light import fit_sunlight
+from experiment_app.render.marks_pass import MarksPass
+from experiment_app.render.part_map import PartMapTarget
 from experiment_app.render.shadow_map import ShadowMap
 from experiment_app.render.treadmill_model import FLOOR
 from experiment_app.render.treadmill_pass import TreadmillPass, corners, footprint, walked_surface
@@ -29,6 +31,8 @@ class Stage:
         self._shadows = ShadowMap(context)
         self._walkers = WalkersPass(context)
         self._contact = ContactPass(context)
+        self._marks: MarksPass | None = None
+        self._viewpoint: Viewpoint | None = None
         self._outdoors: GroundPass | None = None
         self._indoors: tuple[GroundPass, TreadmillPass] | None = None
 
@@ -37,17 +41,27 @@ class Stage:
         """How many body levels were uploaded to the GPU so far."""
         return self._walkers.bodies.uploads
 
+    @property
+    def levels(self) -> tuple[int, ...]:
+        """The level of detail of every walker of the last frame, -1 for one without a body."""
+        return self._walkers.levels
+
     def draw(self, scene: Scene, drawn: Sequence[DrawnWalker], size: tuple[int, int]) -> None:
         """Draws into the bound framebuffer of a size (pixels), in linear light, seen from the first walker's camera."""
         picture = self._context.fbo
         width, height = size
         first = drawn[0]
         viewpoint = place_camera(scene.camera, width / height, first.body.stature, first.place)
+        self._viewpoint = viewpoint
+        if scene.ground == "plain" or all(walker.lines is not None for walker in drawn):
+            self._draw_plain(scene, drawn, viewpoint, size)
+            return
         on_treadmill = scene.ground == "treadmill"
         machine = _middle(scene)
         casters = corners(machine) if on_treadmill else NOTHING
-        sunlight = fit_sunlight(scene.ground, viewpoint.azimuth, drawn, casters)
-        self._walkers.place(drawn, viewpoint, height)
+        bodies = [walker for walker in drawn if walker.lines is None]
+        sunlight = fit_sunlight(scene.ground, viewpoint.azimuth, bodies, casters)
+        self._walkers.place(drawn, viewpoint, height, scene.lod)
 
         self._shadows.begin()
         self._walkers.draw_shadow(sunlight)
@@ -65,13 +79,49 @@ class Stage:
         else:
             ground, area = self._open_ground(), EVERYWHERE
             ground.draw_floor(viewpoint, sunlight)
-        self._contact.draw(drawn, viewpoint, area)
+        self._contact.draw(bodies, viewpoint, area)
         ground.draw_background(viewpoint, sunlight)
         self._shadows.unbind()
+        self._draw_marks(scene, drawn, viewpoint, size)
+
+    def draw_parts(self, target: PartMapTarget) -> None:
+        """Draws the part map of the last frame."""
+        target.begin()
+        if self._viewpoint is not None:
+            self._walkers.draw_parts(self._viewpoint)
+        target.end()
+
+    def _draw_plain(
+        self, scene: Scene, drawn: Sequence[DrawnWalker], viewpoint: Viewpoint, size: tuple[int, int]
+    ) -> None:
+        """Walkers on nothing but one even tone: no ground, no shadow on it."""
+        tone = scene.marks.background
+        self._context.fbo.clear(tone, tone, tone)
+        self._walkers.place(drawn, viewpoint, size[1], scene.lod)
+        bodies = [walker for walker in drawn if walker.lines is None]
+        if bodies:
+            picture = self._context.fbo
+            sunlight = fit_sunlight(scene.ground, viewpoint.azimuth, bodies, NOTHING)
+            self._shadows.begin()
+            self._walkers.draw_shadow(sunlight)
+            picture.use()
+            self._shadows.bind()
+            self._walkers.draw(viewpoint, sunlight)
+            self._shadows.unbind()
+        self._draw_marks(scene, drawn, viewpoint, size)
+
+    def _draw_marks(
+        self, scene: Scene, drawn: Sequence[DrawnWalker], viewpoint: Viewpoint, size: tuple[int, int]
+    ) -> None:
+        if all(walker.lines is None for walker in drawn):
+            return
+        if self._marks is None:
+            self._marks = MarksPass(self._context)
+        self._marks.draw(scene, drawn, viewpoint, size)
 
     def release(self) -> None:
         """Frees the GPU's memory."""
-        for part in (self._shadows, self._walkers, self._contact, self._outdoors, *(self._indoors or ())):
+        for part in (self._shadows, self._walkers, self._contact, self._marks, self._outdoors, *(self._indoors or ())):
             if part is not None:
                 part.release()
 

@@ -46,7 +46,7 @@ class TreadmillPass:
     def draw(self, viewpoint: Viewpoint, sunlight: Sunlight, place: tuple[float, float, float], travel: float) -> None:
         """Draws it into the bound framebuffer; travel: m the belt has run."""
         self._context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        self._lit["world_to_clip"].write(as_uniform(viewpoint.matrix))
+        self._lit["world_to_clip"].write(viewpoint.matrix_bytes)
         self._lit["machine_place"].value = place
         self._lit["belt_travel"].value = travel % LONGEST
         set_light(self._lit, sunlight, viewpoint.eye)

@@ -13,7 +13,7 @@ from stimuli.methods.making import MethodError, leg_length
 from stimuli.poulaine.curve import FIVE, ControlPoints, characteristic_points, poulaine_of
 from stimuli.poulaine.legs import bent, local
 from stimuli.poulaine.regression import Change, regression_table
-from stimuli.poulaine.walking import SIDES, SPEEDS, edited_points, poulaine_to_speed
+from stimuli.poulaine.walking import SIDES, SPEEDS, poulaine_to_speed
 from stimuli.skeleton import Floats
 
 STEPS = 9
@@ -26,7 +26,7 @@ class PoulaineEngine:
 
     points:  left and right foot's, sorted by phase
     moved:   (2, 5, 2) m per m/s, how each of them moves with speed
-    range:   (2,) m/s that the points keep their order in
+    range:   m/s, slowest and fastest walk it can be edited to
     sinking: (STEPS,) m that the hips sink at speeds over the range
     world:   (N, R, 4), positions (N, R, 3) m of the captured walk
     """
@@ -110,7 +110,7 @@ def poulaine_engine(cycle: Cycle, table: str = "normalised", reach: float = 0.5)
         rows = per_speed[[FIVE.index(name) for name in names]].copy()
         rows[names.index("V"), 0] = 0.0
         moved.append(rows)
-    low, high = (_furthest(cycle, found, per_speed, sign * reach) for sign in (-1.0, 1.0))
+    low, high = (_furthest(cycle, table, sign * reach) for sign in (-1.0, 1.0))
     speeds = np.linspace(low, high, STEPS)
     made = [poulaine_to_speed(cycle, float(speed), table) for speed in speeds]
     sinking = np.array([cycle.hips[0, 1] - walk.hips[0, 1] for walk in made])
@@ -118,14 +118,14 @@ def poulaine_engine(cycle: Cycle, table: str = "normalised", reach: float = 0.5)
     return PoulaineEngine(cycle, (found[0], found[1]), np.array(moved), (low, high), sinking, world, positions)
 
 
-def _furthest(cycle: Cycle, points: list[ControlPoints], per_speed: Floats, reach: float) -> float:
-    """m/s: the largest part of `reach` (of the walk's own speed) at which every foot's points keep their order."""
+def _furthest(cycle: Cycle, table: str, reach: float) -> float:
+    """m/s: the largest part of `reach` (of the walk's own speed) to which the walk can be edited."""
     own = cycle.gait.speed
     for part in (1.0, 0.8, 0.6, 0.4, 0.2):
+        speed = min(max(own * (1.0 + reach * part), SPEEDS[0]), SPEEDS[1])
         try:
-            for foot in points:
-                edited_points(foot, per_speed * (reach * part * own))
+            poulaine_to_speed(cycle, speed, table)
         except MethodError:
             continue
-        return min(max(own * (1.0 + reach * part), SPEEDS[0]), SPEEDS[1])
+        return speed
     raise MethodError(f"{cycle.provenance.clip}: its poulaine cannot be edited to any other speed")

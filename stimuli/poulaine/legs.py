@@ -25,11 +25,11 @@ wrong way, so bends forward, and a bent knee stays in its plane."""
 
 @dataclass(frozen=True, eq=False)
 class BentLeg:
-    """World rotations (..., 4) of thigh and shank; reached: (...,) whether the ankle could be put there."""
+    """World rotations (..., 4) of thigh and shank; beyond: (...,) m that the ankle is out of reach."""
 
     thigh: Floats
     shank: Floats
-    reached: Floats
+    beyond: Floats
 
 
 def bent(hip: Floats, ankle: Floats, thigh: Floats, shank: Floats, thigh_bone: Floats, shank_bone: Floats) -> BentLeg:
@@ -58,7 +58,7 @@ def bent(hip: Floats, ankle: Floats, thigh: Floats, shank: Floats, thigh_bone: F
     return BentLeg(
         thigh=multiply(shortest_arc(rotate(turned_thigh, thigh_bone), to_knee), turned_thigh),
         shank=multiply(shortest_arc(rotate(turned_shank, shank_bone), to_ankle), turned_shank),
-        reached=np.abs(distance - length) < 0.005,
+        beyond=np.abs(distance - length),
     )
 
 

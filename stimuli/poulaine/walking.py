@@ -26,8 +26,8 @@ SIDES = ("left", "right")
 SPEEDS = (0.4, 3.0)
 """m/s to which a walk may be edited; the published regressions were made from 0.80 to 2.25 m/s."""
 
-REACHED = 0.7
-"""Share of a cycle over which the ankle must be within 5 mm of its path; in the rest the leg is at its straightest."""
+OUT_OF_REACH = 0.12
+"""m that the new path may at most lie beyond the leg's reach; there the leg is left at its straightest."""
 
 
 def poulaine_walk(cycle: Cycle, count: int = 5, interpolation: str = "hermite") -> Cycle:
@@ -116,10 +116,10 @@ def with_paths(cycle: Cycle, paths: Floats) -> Cycle:
         target[:, 2] = positions[:, hip, 2] + path[:, 0]
         target[:, 1] = positions[:, hip, 1] + path[:, 1]
         legs = bent(positions[:, hip], target, world[:, hip], world[:, knee], cycle.offsets[knee], cycle.offsets[ankle])
-        if np.mean(legs.reached) < REACHED:
+        if legs.beyond.max() > OUT_OF_REACH:
             raise PoulaineError(
-                f"{cycle.provenance.clip}: the {side} leg reaches its new path in only "
-                f"{100 * np.mean(legs.reached):.0f} % of the cycle; ask for a walk nearer to the captured one"
+                f"{cycle.provenance.clip}: the new path of the {side} ankle is {100 * legs.beyond.max():.0f} cm out of "
+                f"the leg's reach; ask for a walk nearer to the captured one"
             )
         rotations[:, hip] = local(world[:, cycle.parents[hip]], legs.thigh)
         rotations[:, knee] = local(legs.thigh, legs.shank)

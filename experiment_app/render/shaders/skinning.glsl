@@ -27,3 +27,8 @@ void blend_matrix(out vec4 x_row, out vec4 y_row, out vec4 z_row) {
 vec3 walker_place() {
     return texelFetch(poses, ivec2(PLACE_TEXEL, first_walker + gl_InstanceID), 0).xyz;
 }
+
+// The walker's number in the scene, kept beside its place.
+int walker_number() {
+    return int(texelFetch(poses, ivec2(PLACE_TEXEL, first_walker + gl_InstanceID), 0).w + 0.5);
+}

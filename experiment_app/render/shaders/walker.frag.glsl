@@ -10,6 +10,11 @@ in vec3 world_normal;
 centroid in float sky_seen;
 in vec2 sole;
 flat in int surface;
+#ifdef TEXTURED
+uniform sampler2DArray pictures;  // linear light
+uniform vec4 covers[MOST_MATERIALS];  // layer of its picture or -1, 0 opaque 1 mask 2 blend, least alpha, alpha factor
+in vec2 picture_place;
+#endif
 
 layout(location = 0) out vec4 pixel;
 
@@ -35,11 +40,23 @@ float highlight(vec3 normal, vec3 to_eye, vec3 to_light, float roughness) {
 
 void main() {
     vec3 albedo = colours[surface].rgb;
+    float alpha = 1.0;
+#ifdef TEXTURED
+    vec4 cover = covers[surface];
+    vec4 picture = cover.x >= 0.0 ? texture(pictures, vec3(picture_place, cover.x)) : vec4(1.0);
+    albedo *= picture.rgb;
+    alpha = cover.y > 0.0 ? picture.a * cover.w : 1.0;
+    if (alpha < cover.z) discard;
+    if (cover.y < 1.5) alpha = 1.0;
+#endif
     float roughness = clamp(colours[surface].a, 0.2, 1.0);
     vec4 finish = finishes[surface];
 
     vec3 to_eye = normalize(eye - world_position);
     vec3 normal = normalize(world_normal);
+#ifdef TEXTURED
+    if (!gl_FrontFacing) normal = -normal;
+#endif
     float facing = dot(normal, to_sun);
     float lit = sunlight(world_position, normal, facing > -0.34 * finish.x);
 
@@ -59,5 +76,5 @@ void main() {
     shine += sky_light(reflect(-to_eye, normal)) * open * smoothness * (0.04 + 0.4 * grazing * smoothness);
     colour += finish.z * shine;
 
-    pixel = vec4(fit_to_display(colour), 1.0);
+    pixel = vec4(fit_to_display(colour), alpha);
 }

@@ -12,6 +12,10 @@ out vec3 world_normal;
 centroid out float sky_seen;
 out vec2 sole;              // metres above the walked surface, kept for contact darkening
 flat out int surface;
+#ifdef TEXTURED
+in vec2 picture_at;
+out vec2 picture_place;
+#endif
 
 void main() {
     vec4 x_row, y_row, z_row;
@@ -23,5 +27,8 @@ void main() {
     sole = vec2(skinned.y, 0.0);
     sky_seen = occlusion;
     surface = int(material);
+#ifdef TEXTURED
+    picture_place = picture_at;
+#endif
     gl_Position = world_to_clip * vec4(world_position, 1.0);
 }

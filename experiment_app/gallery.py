@@ -1,0 +1,116 @@
+"""`gaitlab gallery`: every picture of docs/gallery.md, made anew. Drawn off-screen, always the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from experiment_app.film import save_picture
+from experiment_app.render.part_map import PartMap
+from experiment_app.render.renderer import Renderer
+from experiment_app.scene import Camera, Marks, Scene, View, Walker
+from experiment_app.walkers import drawn_walkers
+from experiment_app.windows.offscreen import offscreen_context
+from stimuli.bodies import shipped_names
+from stimuli.body_library import imported_names
+from stimuli.point_light import FIGURES
+from stimuli.skeleton import JOINTS
+
+Pixels = NDArray[np.uint8]
+TILE = (400, 450)
+WIDE = (1200, 675)
+CLOSE = Camera("three_quarter", 5.0, 1.3, 24.0)
+PHASES = (0.02, 0.18, 0.34, 0.5)
+
+PART_COLOURS = {"legs": (214, 95, 60), "arms": (70, 130, 190), "torso": (110, 165, 90), "head": (225, 185, 70)}
+
+
+def make_gallery(folder: Path) -> Iterator[Path]:
+    """Draws every picture into the folder, and says which as it goes."""
+    folder.mkdir(parents=True, exist_ok=True)
+    context = offscreen_context()
+
+    def drawn(scenes: Sequence[Scene], size: tuple[int, int]) -> list[Pixels]:
+        target = context.simple_framebuffer(size)
+        renderer = Renderer(context, size, 1.0, 4)
+        found = []
+        for scene in scenes:
+            renderer.draw(scene, drawn_walkers(scene), target)
+            found.append(renderer.read_pixels(target))
+        renderer.release()
+        target.release()
+        return found
+
+    def row(name: str, scenes: Sequence[Scene], size: tuple[int, int] = TILE) -> Path:
+        save_picture(np.hstack(drawn(scenes, size)), folder / name)
+        return folder / name
+
+    for body, actor in (("woman", "F1"), ("man", "M1")):
+        yield row(f"{body}-views.png", list(_views(actor)))
+        yield row(
+            f"{body}-walking.png", [_one(actor, phase, camera=Camera("side", 4.6, 1.2, 26.0)) for phase in PHASES]
+        )
+    yield row("representations.png", [_one("F1", 0.2, body=name, marks=Marks(dot_size=0.3)) for name in FIGURES])
+    yield row("treadmill.png", [_treadmill()], WIDE)
+    bodies = (*shipped_names(), *imported_names())
+    yield row("bodies.png", [_one("M1", 0.2, body=name) for name in bodies[:6]])
+    yield row("levels.png", [_one("F1", 0.2, lod=level) for level in (0, 1, 2)])
+    yield _parts(folder / "body-parts.png")
+    context.release()
+
+
+def _one(
+    actor: str,
+    phase: float,
+    *,
+    body: str = "",
+    camera: Camera = CLOSE,
+    marks: Marks | None = None,
+    lod: int | None = None,
+) -> Scene:
+    return Scene((Walker(actor, 1.2, 105.0, phase, body=body),), camera, marks=marks or Marks(), lod=lod)
+
+
+def _views(actor: str) -> Iterator[Scene]:
+    cameras: tuple[tuple[View, float, float, float], ...] = (
+        ("three_quarter", 5.0, 1.3, 24.0),
+        ("side", 5.0, 1.3, 24.0),
+        ("front", 5.0, 1.3, 24.0),
+        ("legs", 2.6, 0.55, 26.0),
+    )
+    return (_one(actor, 0.12, camera=Camera(*camera)) for camera in cameras)
+
+
+def _treadmill() -> Scene:
+    return Scene((Walker("M1", 1.2, 105.0, 0.1),), Camera("side", 4.5, 1.2, 30.0), "treadmill")
+
+
+def _parts(path: Path) -> Path:
+    """The picture of a walker beside its body-part map, regions in colours, joints in shades."""
+    context = offscreen_context()
+    target = context.simple_framebuffer(TILE)
+    renderer = Renderer(context, TILE, 1.0, 4)
+    scene = _one("M1", 0.12)
+    renderer.draw(scene, drawn_walkers(scene), target)
+    pixels = renderer.read_pixels(target)
+    parts = renderer.draw_parts()
+    renderer.release()
+    context.release()
+    assert parts is not None
+    save_picture(np.hstack([pixels, coloured(parts)]), path)
+    return path
+
+
+def coloured(parts: PartMap) -> Pixels:
+    """(H, W, 3) a body-part map to look at."""
+    from experiment_app.render.part_map import part_of
+
+    table = np.full((len(JOINTS) + 1, 3), 32, np.uint8)
+    for index, joint in enumerate(JOINTS):
+        part = part_of(joint, 0)
+        shade = {"left": 1.0, "middle": 0.85, "right": 0.7}.get(part.side, 1.0) * (1.0 - 0.12 * (index % 2))
+        table[index + 1] = np.round(np.array(PART_COLOURS[part.region]) * shade)
+    return table[parts.codes[..., 0]]

@@ -1,0 +1,127 @@
+"""Imported bodies: the library, pictures and alpha of materials, and soles that stay on the ground."""
+
+import json
+from dataclasses import replace
+from importlib.resources import files
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from stimuli.actors import load_actor
+from stimuli.bodies import body_names, load_body, scaled
+from stimuli.body_files.container import Container, open_container, read_container, write_container
+from stimuli.body_files.errors import BodyError
+from stimuli.body_files.imported import import_and_explain, import_body
+from stimuli.body_files.packing import packed
+from stimuli.body_library import imported_names, stored
+from stimuli.body_retarget import on_its_own_soles, sole_gaps
+
+MAN = files("stimuli").joinpath("data", "bodies", "man.glb").read_bytes()
+MODELS = Path(__file__).parents[2].parent / "shared" / "gltf"
+
+
+@pytest.fixture
+def library(tmp_path, monkeypatch):
+    monkeypatch.setenv("GAITLAB_BODIES", str(tmp_path / "bodies"))
+    return tmp_path / "bodies"
+
+
+def with_picture(mode: str, image: dict | None = None) -> bytes:
+    """The man with a 4 x 2 picture, half of it transparent, on his first material."""
+    container = read_container(MAN, "man")
+    stream = BytesIO()
+    pixels = np.full((2, 4, 4), 255, np.uint8)
+    pixels[:, :2, 3] = 0
+    Image.fromarray(pixels).save(stream, "PNG")
+    block = container.buffers[0] + b"\0" * (-len(container.buffers[0]) % 4)
+    document = container.document
+    document["bufferViews"].append({"buffer": 0, "byteOffset": len(block), "byteLength": len(stream.getvalue())})
+    document["images"] = [image or {"bufferView": len(document["bufferViews"]) - 1, "mimeType": "image/png"}]
+    document["textures"] = [{"source": 0}]
+    for material in document["materials"]:
+        material["alphaMode"], material["alphaCutoff"] = mode, 0.3
+        material["pbrMetallicRoughness"]["baseColorTexture"] = {"index": 0}
+    for mesh in document["meshes"]:
+        for primitive in mesh["primitives"]:
+            count = document["accessors"][primitive["attributes"]["POSITION"]]["count"]
+            document["accessors"].append({"componentType": 5126, "count": count, "type": "VEC2"})
+            primitive["attributes"]["TEXCOORD_0"] = len(document["accessors"]) - 1
+    whole = block + stream.getvalue()
+    document["buffers"][0]["byteLength"] = len(whole)
+    return write_container(Container(document, (whole,)))
+
+
+@pytest.mark.parametrize("mode", ["OPAQUE", "MASK", "BLEND"])
+def test_pictures_and_alpha_modes_are_read(tmp_path, mode):
+    (tmp_path / "a.glb").write_bytes(with_picture(mode))
+    surface = import_body(tmp_path / "a.glb").levels[0][0]
+    assert surface.alpha == mode.lower()
+    assert surface.alpha_cutoff == pytest.approx(0.3)
+    assert surface.picture is not None
+    assert surface.picture.shape == (2, 4, 4)
+    assert surface.picture_at is not None
+
+
+def test_a_missing_picture_is_a_note_and_a_picture_elsewhere_is_refused(tmp_path):
+    (tmp_path / "a.glb").write_bytes(with_picture("OPAQUE", {"uri": "nowhere.png"}))
+    body, explained = import_and_explain(tmp_path / "a.glb")
+    assert body.levels[0][0].picture is None
+    assert "nowhere.png" in explained.problems[0]
+    (tmp_path / "b.glb").write_bytes(with_picture("OPAQUE", {"uri": "../../secret.png"}))
+    with pytest.raises(BodyError, match="outside"):
+        import_body(tmp_path / "b.glb")
+
+
+def test_an_imported_body_is_known_by_its_name(library):
+    stored(MAN, "lab7_anna")
+    assert imported_names() == ("lab7_anna",)
+    assert "lab7_anna" in body_names()
+    assert load_body("lab7_anna").name == "lab7_anna"
+    assert load_body("lab7_anna") is load_body("lab7_anna")
+    with pytest.raises(BodyError, match="--replace"):
+        stored(MAN, "lab7_anna")
+    stored(MAN, "lab7_anna", replace=True)
+
+
+@pytest.mark.parametrize("name", ["woman", "point_light", "../x", "", "1a", "a b"])
+def test_names_that_a_body_cannot_have(library, name):
+    with pytest.raises(BodyError):
+        stored(MAN, name)
+
+
+def test_a_figure_without_a_body_cannot_be_loaded():
+    with pytest.raises(BodyError, match="without a body"):
+        load_body("stick_figure")
+
+
+def test_a_gltf_with_other_files_becomes_one_file(tmp_path):
+    container = read_container(MAN, "man")
+    document = json.loads(json.dumps(container.document))
+    document["buffers"][0]["uri"] = "man.bin"
+    (tmp_path / "man.bin").write_bytes(container.buffers[0])
+    (tmp_path / "man.gltf").write_text(json.dumps(document))
+    (tmp_path / "one.glb").write_bytes(packed(open_container(tmp_path / "man.gltf"), tmp_path / "man.gltf"))
+    one, many = import_body(tmp_path / "one.glb"), import_body(tmp_path / "man.gltf")
+    assert np.array_equal(one.levels[0][0].positions, many.levels[0][0].positions)
+
+
+@pytest.mark.parametrize("model", ["CesiumMan.glb", "RiggedFigure.glb"])
+def test_imported_soles_stay_within_five_millimetres_of_the_ground(model):
+    if not (MODELS / model).exists():
+        pytest.skip("the Khronos sample models are not here")
+    body = import_body(MODELS / model)
+    actor = load_actor("M1", body)
+    grown = scaled(body, actor.height)
+    lowest, highest = sole_gaps(on_its_own_soles(actor, grown), grown)
+    assert -5.0 < lowest <= highest < 5.0
+
+
+def test_shipped_soles_stay_within_five_millimetres_of_the_ground():
+    for name in ("F1", "M1"):
+        actor = load_actor(name)
+        body = scaled(load_body(actor.body), actor.height)
+        lowest, highest = sole_gaps(actor, replace(body, levels=body.levels[:1]))
+        assert -5.0 < lowest <= highest < 5.0
