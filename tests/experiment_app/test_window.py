@@ -96,6 +96,7 @@ def short_text() -> str:
         ("minimum_looking_time: 2 ", "minimum_looking_time: 0.2 "),
         ("interval: 0.7 ", "interval: 0.1 "),
         ("within: [actor, speed, start]", "within: [start]"),
+        ("{factor: speed, bound: 0.0003}", "{factor: start, bound: 0.0003}"),
         ("F1: 0.00690, F2: 0.00560, M1: 0.00700, M2: 0.00700", "F1: 0.00690"),
     )
 

@@ -32,6 +32,7 @@ def short() -> StudyFile:
             ("repetitions: 4  ", "repetitions: 1"),
             ("every: 24  ", "every: 2"),
             ("within: [actor, speed, start]", "within: [actor, start]"),
+            ("{factor: speed, bound: 0.0003}", "{factor: start, bound: 0.0003}"),
             ("F1: 0.00690, F2: 0.00560, M1: 0.00700, M2: 0.00700", "F1: 0.00690, M1: 0.00700"),
             ("{kind: interaction, x: actor, lines: speed}", "{kind: interaction, x: actor, lines: start}"),
         ),

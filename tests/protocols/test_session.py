@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from protocols.adjustment import AdjustmentTrial
+from protocols.consistency import inconsistencies
 from protocols.events import Clicked, Closed, FocusLost, KeyDown, KeyUp, Saved, Shown, Typed
 from protocols.plan import TrialStep, make_plan
 from protocols.record import Ended, Key, TrialRecord
@@ -60,6 +61,10 @@ class Player:
 @pytest.fixture
 def player() -> Player:
     return Player(begin(make_plan(short().study, seed=1, participant_number=1)))
+
+
+def test_the_short_study_of_these_tests_is_itself_consistent():
+    assert inconsistencies(short().study) == []
 
 
 def test_the_order_is_consent_questions_instructions_training_trials_with_a_break_debrief():
