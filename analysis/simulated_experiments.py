@@ -18,6 +18,7 @@ from analysis.cells import CellMeans
 from analysis.errors import AnalysisError
 from analysis.gait_measures import GRAVITY
 from analysis.plan import AnalysisPlan, plan_of
+from protocols.study import Simulation
 
 MEASURES = ("walk_ratio", "step_frequency", "step_length", "normalised_walk_ratio")
 
@@ -45,9 +46,7 @@ class ExperimentModel:
 def experiment_model(study: Mapping[str, Any], participants: int | None = None) -> ExperimentModel:
     """The model in a study file (as a plain dict), for so many participants (planned, if not given)."""
     plan = plan_of(study)
-    simulation = study.get("simulation")
-    if not simulation:
-        raise AnalysisError("The study has no `simulation:` section, so there are no observers to simulate.")
+    simulation = Simulation.model_validate(study.get("simulation") or {}).model_dump()
     if plan.measure not in MEASURES:
         raise AnalysisError(f"Power can be simulated for {', '.join(MEASURES)}, not for {plan.measure!r}.")
     n = participants or plan.planned
@@ -72,9 +71,9 @@ def experiment_model(study: Mapping[str, Any], participants: int | None = None) 
         _weights(plan, columns, len(conditions)),
         np.array([population[name]["mean"] for name in names], dtype=float),
         np.array([population[name]["sd"] for name in names], dtype=float),
-        float(simulation.get("shared", 0.5)),
-        float(simulation.get("trial_noise", 0.0006)),
-        float(simulation.get("anchoring", 0.0)),
+        simulation["shared"],
+        simulation["trial_noise"],
+        simulation["anchoring"],
         float(bounds.get("minimum", 80.0)),
         float(bounds.get("maximum", 120.0)),
         np.tile([(plan.heights or {}).get(str(actor), np.nan) for actor in actors], plan.repetitions),

@@ -52,7 +52,6 @@ def draw_observer(study: Study, participant_number: int, seed: int) -> Observer:
     Preferences over actors are normal with the study's means and s.d. and correlate by `shared` within a
     participant. Between-participant factors are filled in turn by the participant's number.
     """
-    assert study.simulation is not None
     rng = Random(f"{study.study}/observer/{seed}")
     return Observer(
         _preferences(study.simulation, rng),

@@ -13,7 +13,7 @@ from experiment_app.run_folder import Run, first_headers, participant_runs
 from experiment_app.windows.undrawn import UndrawnWindow
 from protocols.design import default_seed
 from protocols.session import begin
-from protocols.study_file import Mistake, StudyFile
+from protocols.study_file import StudyFile
 
 DISPLAY = {"window": "undrawn"}
 
@@ -22,12 +22,8 @@ def simulate(study: StudyFile, participants: int, data: Path, seed: int = 0, fir
     """Runs participants S001, S002, ... to the end and yields each run; finished ones are left as they are.
 
     seed: the same seed gives the same participants, answers and responses. first: number of the first.
-    Raises StudyFileError when the study describes no simulated observers, UsageError when real participants
-    are in the folder.
+    Raises UsageError when real participants are in the folder, or the same ones simulated in another way.
     """
-    if study.study.simulation is None:
-        message = "is missing; add simulation: preferred_walk_ratio: {ACTOR: {mean: ..., sd: ...}} to simulate"
-        raise study.error([Mistake(("simulation",), message, on_key=True)])
     refuse_mixed(data, study.study.study, simulated=True)
     for number in range(first, first + participants):
         participant = f"S{number:03d}"

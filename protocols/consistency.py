@@ -151,7 +151,7 @@ def _questions(study: Study) -> Iterator[Mistake]:
         if question.kind == "number" and question.minimum > question.maximum:
             where = ("participants", "questions", i, "minimum")
             yield Mistake(where, f"{question.minimum} is above maximum {question.maximum}")
-    if study.simulation is not None:
+    if "preferred_walk_ratio" in study.simulation.model_fields_set:
         actor = study.stimulus.actor
         actors = study.factors.get(actor[1:], []) if actor.startswith("$") else [actor]
         for name in actors:

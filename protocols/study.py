@@ -326,18 +326,37 @@ class Preference(Part):
     sd: Annotated[float, Field(strict=True, ge=0.0, lt=0.05)] = Field(description="m·min, between participants")
 
 
-class Simulation(Part):
-    """Simulated observers: what `gaitlab simulate` uses when nobody sits at the screen."""
+PUBLISHED_PREFERENCES = {
+    "F1": {"mean": 0.00573, "sd": 0.00065},
+    "F2": {"mean": 0.00595, "sd": 0.00062},
+    "M1": {"mean": 0.00658, "sd": 0.00051},
+    "M2": {"mean": 0.00651, "sd": 0.00058},
+}
+"""Estimated walk ratios of 22 participants, m·min: Niay (2022), table 3.4."""
 
-    preferred_walk_ratio: dict[str, Preference] = Field(min_length=1, description="Actor: preference.")
+
+def _published() -> dict[str, Preference]:
+    return {actor: Preference.model_validate(values) for actor, values in PUBLISHED_PREFERENCES.items()}
+
+
+class Simulation(Part):
+    """Simulated observers: what `gaitlab simulate` uses when nobody sits at the screen.
+
+    Left out, the preferences are the published ones (Niay 2022, table 3.4); an actor without one is preferred at
+    the mean of the others.
+    """
+
+    preferred_walk_ratio: dict[str, Preference] = Field(
+        default_factory=_published, min_length=1, description="Actor: preference; the published ones when left out."
+    )
     shared: float = Field(
-        0.5,
+        0.75,
         strict=True,
         ge=0.0,
         le=1.0,
         description="Correlation of a participant's preferences over actors.",
     )
-    trial_noise: float = Field(0.0006, strict=True, ge=0.0, lt=0.05, description="m·min, s.d. from trial to trial.")
+    trial_noise: float = Field(0.0004, strict=True, ge=0.0, lt=0.05, description="m·min, s.d. from trial to trial.")
     anchoring: float = Field(
         0.0,
         strict=True,
@@ -371,4 +390,4 @@ class Study(Part):
     pages: Pages
     words: Words = Words()
     analysis: Analysis
-    simulation: Simulation | None = None
+    simulation: Simulation = Field(default_factory=Simulation)

@@ -90,9 +90,17 @@ def test_t_tests_of_simulated_experiments_are_t_tests(study: dict[str, Any]) -> 
     assert _t_p(values, model, "actor", "F1", 0.0069)[0] == pytest.approx(table["p"][0], rel=1e-8)
 
 
+def test_without_a_simulation_section_the_published_observers_are_simulated(study: dict[str, Any]) -> None:
+    bare = {k: v for k, v in study.items() if k != "simulation"}
+    preferences = {"preferred_walk_ratio": study["simulation"]["preferred_walk_ratio"]}
+    same = power_by_simulation({**study, "simulation": preferences}, experiments=20)
+    pd.testing.assert_frame_equal(power_by_simulation(bare, experiments=20), same)
+
+
 def test_what_cannot_be_simulated_is_said(study: dict[str, Any]) -> None:
-    with pytest.raises(AnalysisError, match="no `simulation:`"):
-        power_by_simulation({k: v for k, v in study.items() if k != "simulation"}, experiments=5)
+    with pytest.raises(AnalysisError, match="no preferred walk ratio for F7"):
+        factors = {**study["factors"], "actor": ["F1", "F7"]}
+        power_by_simulation({**study, "factors": factors}, experiments=5)
     with pytest.raises(AnalysisError, match="i/n"):
         power_by_simulation(study, experiments=5, shard=(3, 2))
     with pytest.raises(AnalysisError, match="no study file"):

@@ -7,10 +7,11 @@ from statistics import mean
 import pytest
 
 from experiment_app.errors import UsageError
+from experiment_app.observer import draw_observer
 from experiment_app.simulate import simulate
-from protocols.study_file import StudyFileError, parse_study, read_study
+from protocols.study_file import parse_study, read_study
 from tests.experiment_app.sessions import opened, play
-from tests.protocols.studies import changed, shipped_text, short
+from tests.protocols.studies import changed, shipped_text, short, study
 
 
 def responses(run, **levels):
@@ -77,11 +78,13 @@ def test_simulated_participants_are_not_mixed_with_real_ones(tmp_path, monkeypat
         list(simulate(short(), 1, tmp_path))
 
 
-def test_a_study_without_observers_says_what_to_add(tmp_path):
+def test_without_a_simulation_section_the_observers_are_the_published_ones():
     text = shipped_text()
-    file = parse_study("s.yaml", text[: text.index("# Simulated observers")])
-    with pytest.raises(StudyFileError, match=r"s.yaml:\d+:\d+: simulation: is missing; add simulation"):
-        list(simulate(file, 1, tmp_path))
+    bare = parse_study("s.yaml", text[: text.index("# Simulated observers")]).study
+    # Niay (2022), table 3.4: the published means and standard deviations, as the shipped study spells them out
+    assert bare.simulation.preferred_walk_ratio == study().simulation.preferred_walk_ratio
+    assert bare.simulation.preferred_walk_ratio["M1"].mean == 0.00658
+    assert draw_observer(bare, 1, 7) == draw_observer(study(), 1, 7)
 
 
 def test_anchoring_pulls_the_answer_towards_the_start(tmp_path):
