@@ -98,8 +98,8 @@ def test_without_a_simulation_section_the_published_observers_are_simulated(stud
 
 
 def test_what_cannot_be_simulated_is_said(study: dict[str, Any]) -> None:
+    factors = {**study["factors"], "actor": ["F1", "F7"]}
     with pytest.raises(AnalysisError, match="no preferred walk ratio for F7"):
-        factors = {**study["factors"], "actor": ["F1", "F7"]}
         power_by_simulation({**study, "factors": factors}, experiments=5)
     with pytest.raises(AnalysisError, match="i/n"):
         power_by_simulation(study, experiments=5, shard=(3, 2))
