@@ -102,7 +102,23 @@ def read_scene(container: Container, where: str) -> GltfScene:
     total = sum(len(p.triangles) for p in primitives)
     if total > MOST_TRIANGLES:
         raise BodyError(f"{where}: it has {total} triangles, more than {MOST_TRIANGLES}; simplify it first")
-    return GltfScene(nodes, skins, primitives)
+    scene = GltfScene(nodes, skins, primitives)
+    _check_worn_joints(scene, where)
+    return scene
+
+
+def _check_worn_joints(scene: GltfScene, where: str) -> None:
+    """Raises BodyError when a mesh names a joint that the skin it wears does not have."""
+    for index, node in enumerate(scene.nodes):
+        for primitive in scene.primitives:
+            if node.skin is None or primitive.mesh != node.mesh or primitive.joints is None:
+                continue
+            count = len(scene.skins[node.skin].joints)
+            if primitive.joints.size and int(primitive.joints.max()) >= count:
+                raise BodyError(
+                    f"{where}: mesh {node.mesh} at node {index} names joint {int(primitive.joints.max())}, but its "
+                    f"skin has {count}; export the file again"
+                )
 
 
 def local_matrix(node: Node) -> Floats:

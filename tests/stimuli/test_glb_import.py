@@ -86,6 +86,12 @@ def test_fbx_is_refused_with_the_command_that_converts_it(tmp_path):
         import_body(saved(tmp_path, b"Kaydara FBX Binary  \x00", "walker.fbx"))
 
 
+def _only_five_joints(skin):
+    """A skin cut short, as a garbled file once had: meshes name joints beyond its end."""
+    skin.pop("inverseBindMatrices", None)
+    skin.update(joints=skin["joints"][:5])
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
@@ -93,6 +99,7 @@ def test_fbx_is_refused_with_the_command_that_converts_it(tmp_path):
         (lambda d: [n.pop("skin", None) for n in d["nodes"]], "no mesh hangs on a skeleton"),
         (lambda d: d["skins"][0].update(joints=[0] * 300), "300 joints, more than 256"),
         (lambda d: d["skins"][0].update(joints=[999]), "joints that do not exist"),
+        (lambda d: _only_five_joints(d["skins"][0]), "but its skin has 5; export the file again"),
         (lambda d: d["nodes"][3].update(children=[0]), "each other's parents"),
         (lambda d: d["meshes"][0].pop("primitives"), "breaks glTF's own rules"),
     ],
