@@ -112,7 +112,7 @@ def test_gaze_comes_by_label_in_any_order_without_blinks_and_on_the_clock_of_the
     assert got["name"] == "tracker"
     assert len(got["samples"]) == 1  # the others had too little confidence or no number
     late, x, y = got["samples"][0]
-    assert 0.0 <= late < 0.05
+    assert -0.001 <= late < 0.05  # the streams estimate the difference of their clocks
     assert (x, y) == pytest.approx((0.75, 0.75))  # a quarter from the bottom is three quarters from the top
 
 
