@@ -117,6 +117,9 @@ class Scene:
     screen_angle: vertical visual angle of the whole picture for the viewer, degrees; 0 takes the camera's field of
                   view, which is the same when the perspective is true.
     lod:          level of detail that all walkers are forced to, 0 the finest; None chooses by size on the screen.
+    beside:       a second scene for the right half of the picture, this one then has the left half: each with its own
+                  walkers, camera, ground, marks and lod. Page, caption and screen_angle are those of this scene and
+                  for the whole picture.
     """
 
     walkers: tuple[Walker, ...] = ()
@@ -127,3 +130,9 @@ class Scene:
     marks: Marks = field(default_factory=Marks)
     screen_angle: float = 0.0
     lod: int | None = None
+    beside: Scene | None = None
+
+    @property
+    def everyone(self) -> tuple[Walker, ...]:
+        """The walkers of the scene, then those of the scene beside it."""
+        return self.walkers + (self.beside.walkers if self.beside is not None else ())

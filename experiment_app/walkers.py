@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 from experiment_app.render.drawn import DrawnWalker
@@ -39,8 +40,9 @@ def _resting_markers(actor: str) -> Floats:
 
 
 def drawn_walkers(scene: Scene) -> tuple[DrawnWalker, ...]:
-    """Every walker of the scene with the matrices of its pose, in the world at its place and distance."""
-    return tuple(_drawn(walker, scene.ground == "treadmill", scene.marks.seed) for walker in scene.walkers)
+    """Every walker of the scene, then of the scene beside it, with the matrices of its pose, at its place."""
+    drawn = tuple(_drawn(walker, scene.ground == "treadmill", scene.marks.seed) for walker in scene.walkers)
+    return drawn + (drawn_walkers(scene.beside) if scene.beside is not None else ())
 
 
 def _drawn(walker: Walker, on_the_spot: bool, seed: int) -> DrawnWalker:
@@ -57,8 +59,11 @@ def _drawn(walker: Walker, on_the_spot: bool, seed: int) -> DrawnWalker:
 def measured_gait(scene: Scene) -> dict[str, float]:
     """Speed (m/s), step frequency (steps/min), step length (m), walk ratio (m·min) and foot slide (mm) as drawn.
 
-    Of the scene's first walker; empty without one.
+    Of the scene's first walker; empty without one. Those of the scene beside it are called beside_speed and so on.
     """
+    if scene.beside is not None:
+        beside = {f"beside_{name}": value for name, value in measured_gait(scene.beside).items()}
+        return measured_gait(replace(scene, beside=None)) | beside
     if not scene.walkers:
         return {}
     walker = scene.walkers[0]

@@ -22,6 +22,9 @@ The camera stands on the walker's right, so that the walker goes from left to ri
 Three-quarter is the canonical view of objects (Palmer, Rosch and Chase 1981; Blanz, Tarr and Bülthoff 1999).
 """
 
+NARROWEST = 0.8
+"""Width over height that still shows a walker with the arms' swing in every named view."""
+
 LEGS_TOP = 0.50  # of stature: the legs view ends here, just below the hips
 LEGS_MARGIN = 0.08  # of stature: ground shown below the soles in the legs view
 
@@ -64,9 +67,10 @@ def place_camera(camera: Camera, aspect: float, stature: float, walker: tuple[fl
              means that it stands still.
 
     The pitch is the mean of the elevation of crown and soles, so both have the same margin whatever the
-    distance, height or aspect ratio. In pictures taller than wide, the field of view is widened so that the
-    horizontal one is what it would be in a square; otherwise it is exactly what the scene asks for. Only the
-    legs view is narrower where that would show more than legs: it ends LEGS_TOP above and LEGS_MARGIN below.
+    distance, height or aspect ratio. In pictures narrower than NARROWEST (upright displays, halves of old screens)
+    the field of view is widened so that the horizontal one is what it would be there; otherwise it is exactly
+    what the scene asks for. Only the legs view is narrower where that would show more than legs: it ends LEGS_TOP
+    above and LEGS_MARGIN below.
     """
     azimuth = math.radians(AZIMUTHS[camera.view])
     outwards = np.array([math.sin(azimuth), 0.0, math.cos(azimuth)])
@@ -81,7 +85,7 @@ def place_camera(camera: Camera, aspect: float, stature: float, walker: tuple[fl
         half_angle = min(half_angle, 0.5 * (above - below))
     pitch = 0.5 * (above + below)
     forward = np.array([0.0, math.sin(pitch), 0.0]) - math.cos(pitch) * outwards
-    half_height = math.tan(half_angle) / min(1.0, aspect)
+    half_height = math.tan(half_angle) * max(1.0, NARROWEST / aspect)
     turn = look(eye, forward)
     matrix = perspective(half_height, aspect) @ turn
     return Viewpoint(eye, azimuth, half_height, matrix, _from_clip(half_height, aspect, turn, eye))

@@ -37,6 +37,7 @@ class MarksPass:
         self._write(data)
         assert self._array is not None
         self._context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
+        self._context.blend_func = moderngl.DEFAULT_BLENDING  # pages leave another behind
         self._context.fbo.depth_mask = False
         set_if_used(self._program, "world_to_clip", viewpoint.matrix_bytes)
         set_if_used(self._program, "size", (float(size[0]), float(size[1])))

@@ -6,13 +6,14 @@ them does not stall the frame. Everything a joint carries most is that joint's p
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from experiment_app.render.viewports import Area
 from stimuli.skeleton import JOINTS
 
 Region = Literal["legs", "arms", "torso", "head", "elsewhere"]
@@ -24,13 +25,15 @@ class Part:
     """What is under a point.
 
     region: legs, arms (with hands), torso, head or elsewhere; side: the walker's own left or right, or middle.
-    joint:  the finer part, a name of JOINTS, "" elsewhere; walker: number in the scene from 0, -1 elsewhere.
+    joint:  the finer part, a name of JOINTS, "" elsewhere; walker: number in its scene from 0, -1 elsewhere.
+    beside: whether the point lies in the scene beside, the right half of the picture.
     """
 
     region: Region
     side: Side = ""
     joint: str = ""
     walker: int = -1
+    beside: bool = False
 
 
 ELSEWHERE = Part("elsewhere")
@@ -51,9 +54,14 @@ def part_of(joint: str, walker: int) -> Part:
 
 @dataclass(frozen=True, eq=False)
 class PartMap:
-    """The parts of one frame; codes: (height, width, 4) uint8, top row first: joint + 1, walker + 1 low, high, 255."""
+    """The parts of one frame.
+
+    codes:  (height, width, 4) uint8, top row first: joint + 1, walker + 1 low, high, 255.
+    beside: first column of the scene beside, None when one scene fills the picture.
+    """
 
     codes: NDArray[np.uint8]
+    beside: int | None = None
 
     def at(self, x: float, y: float) -> Part:
         """The part at a pixel (from the top left)."""
@@ -61,7 +69,8 @@ class PartMap:
         if not (0 <= row < self.codes.shape[0] and 0 <= column < self.codes.shape[1]):
             return ELSEWHERE
         joint, low, high, _ = (int(value) for value in self.codes[row, column])
-        return part_of(JOINTS[joint - 1], low + 256 * high - 1) if joint else ELSEWHERE
+        part = part_of(JOINTS[joint - 1], low + 256 * high - 1) if joint else ELSEWHERE
+        return replace(part, beside=self.beside is not None and column >= self.beside)
 
 
 class PartMapTarget:
@@ -74,6 +83,7 @@ class PartMapTarget:
         self._depth = context.depth_renderbuffer(size)
         self._frame = context.framebuffer([self._codes], self._depth)
         self._buffers = [context.buffer(reserve=4 * size[0] * size[1]) for _ in range(2)]
+        self._beside: list[int | None] = [None, None]
         self._drawn = 0
 
     @property
@@ -86,20 +96,29 @@ class PartMapTarget:
         self._frame.use()
         self._frame.viewport = (0, 0, *self._size)
         self._frame.clear()
+        self._beside[self._drawn % 2] = None
         self._context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+
+    def look_at(self, area: Area) -> None:
+        """What follows is drawn into an area of the map; one that does not begin at the left is the scene beside."""
+        self._frame.viewport = area
+        if area[0]:
+            self._beside[self._drawn % 2] = area[0]
 
     def end(self) -> None:
         """Sends the bytes on their way."""
-        self._frame.read_into(self._buffers[self._drawn % 2], components=4, alignment=1)
+        whole = (0, 0, *self._size)
+        self._frame.read_into(self._buffers[self._drawn % 2], viewport=whole, components=4, alignment=1)
         self._drawn += 1
 
     def take(self, frames_ago: int = 0) -> PartMap | None:
         """The map drawn last (it may be waited for), or 1 frame before (it has arrived); None when there is none."""
         if not 0 <= frames_ago <= 1 or self._drawn <= frames_ago:
             return None
-        raw = self._buffers[(self._drawn - 1 - frames_ago) % 2].read()
+        asked = (self._drawn - 1 - frames_ago) % 2
         width, height = self._size
-        return PartMap(np.frombuffer(raw, np.uint8).reshape(height, width, 4)[::-1])
+        codes = np.frombuffer(self._buffers[asked].read(), np.uint8).reshape(height, width, 4)[::-1]
+        return PartMap(codes, self._beside[asked])
 
     def release(self) -> None:
         """Frees the GPU's memory."""

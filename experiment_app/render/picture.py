@@ -51,14 +51,18 @@ class Picture:
         """Whether drawing leaves the depths as they are."""
         self._drawn.depth_mask = not kept
 
-    def show(self, target: moderngl.Framebuffer) -> None:
-        """Resolves the samples in linear light and writes sRGB codes over the whole target, left bound."""
+    def show(self, target: moderngl.Framebuffer, corner: tuple[int, int] = (0, 0)) -> None:
+        """Resolves the samples in linear light and writes sRGB codes into the target, left bound.
+
+        corner: the pixel of the target, from its lower left, where the picture's lower left goes.
+        """
         if self._drawn is not self._single:
             self._context.copy_framebuffer(self._single, self._drawn)
         target.use()
-        target.viewport = (0, 0, *self.size)
+        target.viewport = (*corner, *self.size)
         self._context.enable_only(moderngl.NOTHING)
         self._resolved.use(0)
+        self._program["corner"].value = corner
         self._program["linear_picture"].value = 0
         self._triangle.render(moderngl.TRIANGLES, vertices=3)
 

@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiment_app.render.drawn import DrawnWalker
+from experiment_app.render.page_shapes import PAGE
 from experiment_app.render.pages import PagePainter
 from experiment_app.render.part_map import PartMap, PartMapTarget
 from experiment_app.render.picture import Picture
 from experiment_app.render.stage import Stage
+from experiment_app.render.viewports import Viewport, viewports_of
 from experiment_app.scene import Page, Scene
 
 
@@ -31,6 +33,9 @@ class Renderer:
         self._parts: PartMapTarget | None = None
         self._pages = PagePainter(context, size, pixel_ratio)
         self._asked = (tuple(size), pixel_ratio)
+        self._half: Picture | None = None
+        self._viewports: tuple[Viewport, ...] = ()
+        self._levels: tuple[int, ...] = ()
 
     @property
     def samples(self) -> int:
@@ -45,7 +50,7 @@ class Renderer:
     @property
     def levels(self) -> tuple[int, ...]:
         """The level of detail of every walker of the last frame, 0 the finest, -1 for one without a body."""
-        return self._stage.levels
+        return self._levels
 
     def draw_parts(self, frames_ago: int = 0) -> PartMap | None:
         """Draws the body-part map of the frame drawn last, and returns it or the one of the frame before.
@@ -57,23 +62,40 @@ class Renderer:
             if self._parts is not None:
                 self._parts.release()
             self._parts = PartMapTarget(self._context, self._picture.size)
-        self._stage.draw_parts(self._parts)
+        self._stage.draw_parts(self._viewports, self._parts)
         return self._parts.take(frames_ago)
 
     def draw(self, scene: Scene, drawn: Sequence[DrawnWalker], target: moderngl.Framebuffer) -> None:
-        """Draws the scene over the whole target; drawn: scene.walkers in the same order, posed.
+        """Draws the scene over the whole target; drawn: `scene.everyone` in the same order, posed.
 
         The same scene gives the same pixels on the same driver. Allocates nothing once a scene with as many
         walkers of the same bodies was drawn.
         """
-        if drawn:
-            self._picture.begin()
-            self._stage.draw(scene, drawn, self._picture.size)
-            self._picture.show(target)
-        else:
-            target.use()
-            target.viewport = (0, 0, *self._picture.size)
+        target.use()
+        target.viewport = (0, 0, *self._picture.size)
+        if scene.beside is not None and drawn:
+            target.clear(*PAGE)  # the strip between the halves, and a half with nobody in it
+        viewports = viewports_of(scene, drawn, self._picture.size)
+        self._viewports = tuple(view for view in viewports if view.drawn)
+        self._levels = ()
+        for view in self._viewports:
+            picture = self._picture_for(view)
+            picture.begin()
+            self._stage.draw(view.scene, view.drawn, picture.size)
+            self._levels += self._stage.levels
+            picture.show(target, view.area[:2])
+        target.viewport = (0, 0, *self._picture.size)
         self._pages.draw(scene)
+
+    def _picture_for(self, view: Viewport) -> Picture:
+        """The picture a view is drawn in; both halves take turns in one."""
+        size = view.area[2:]
+        if size == self._picture.size:
+            return self._picture
+        if self._half is None:
+            self._half = Picture(self._context, size, self.samples)
+        self._half.resize(size)
+        return self._half
 
     def resize(self, size: tuple[int, int], pixel_ratio: float) -> None:
         """The target has a new size (pixels) or density; does nothing when neither has changed."""
@@ -100,3 +122,5 @@ class Renderer:
             self._parts.release()
         self._stage.release()
         self._picture.release()
+        if self._half is not None:
+            self._half.release()

@@ -17,6 +17,7 @@ from experiment_app.render.part_map import PartMapTarget
 from experiment_app.render.shadow_map import ShadowMap
 from experiment_app.render.treadmill_model import FLOOR
 from experiment_app.render.treadmill_pass import TreadmillPass, corners, footprint, walked_surface
+from experiment_app.render.viewports import Viewport
 from experiment_app.render.walkers_pass import WalkersPass
 from experiment_app.scene import Scene
 
@@ -32,7 +33,6 @@ class Stage:
         self._walkers = WalkersPass(context)
         self._contact = ContactPass(context)
         self._marks: MarksPass | None = None
-        self._viewpoint: Viewpoint | None = None
         self._outdoors: GroundPass | None = None
         self._indoors: tuple[GroundPass, TreadmillPass] | None = None
 
@@ -52,7 +52,6 @@ class Stage:
         width, height = size
         first = drawn[0]
         viewpoint = place_camera(scene.camera, width / height, first.body.stature, first.place)
-        self._viewpoint = viewpoint
         if scene.ground == "plain" or all(walker.lines is not None for walker in drawn):
             self._draw_plain(scene, drawn, viewpoint, size)
             return
@@ -84,11 +83,17 @@ class Stage:
         self._shadows.unbind()
         self._draw_marks(scene, drawn, viewpoint, size)
 
-    def draw_parts(self, target: PartMapTarget) -> None:
-        """Draws the part map of the last frame."""
+    def draw_parts(self, viewports: Sequence[Viewport], target: PartMapTarget) -> None:
+        """Draws the part map of the last frame; viewports: what it showed."""
         target.begin()
-        if self._viewpoint is not None:
-            self._walkers.draw_parts(self._viewpoint)
+        for view in viewports:
+            width, height = view.area[2:]
+            first = view.drawn[0]
+            viewpoint = place_camera(view.scene.camera, width / height, first.body.stature, first.place)
+            if len(viewports) > 1:  # the passes hold the walkers of the last view only
+                self._walkers.place(view.drawn, viewpoint, height, view.scene.lod)
+            target.look_at(view.area)
+            self._walkers.draw_parts(viewpoint)
         target.end()
 
     def _draw_plain(

@@ -174,16 +174,30 @@ def test_a_picture_colours_and_a_mask_cuts(context: moderngl.Context) -> None:
     assert actor.name == "F1"
 
 
-SCENES = {
-    "woman": Scene((WALKER,), CLOSE),
-    "man-treadmill": Scene((replace(WALKER, actor="M1"),), Camera("side", 4.2, 1.2, 30.0), "treadmill"),
-    "point-light": Scene((replace(WALKER, body="point_light"),), CLOSE),
-    "stick-figure": Scene((replace(WALKER, body="stick_figure"),), CLOSE),
+PAIR = (480, 270)
+SCENES: dict[str, tuple[Scene, tuple[int, int]]] = {
+    "woman": (Scene((WALKER,), CLOSE), SIZE),
+    "man-treadmill": (Scene((replace(WALKER, actor="M1"),), Camera("side", 4.2, 1.2, 30.0), "treadmill"), SIZE),
+    "point-light": (Scene((replace(WALKER, body="point_light"),), CLOSE), SIZE),
+    "stick-figure": (Scene((replace(WALKER, body="stick_figure"),), CLOSE), SIZE),
+    "pair": (Scene((WALKER,), CLOSE, beside=Scene((replace(WALKER, actor="M1"),), Camera("legs"))), PAIR),
 }
 
 
+def drawn_anew(context: moderngl.Context, name: str) -> NDArray[np.uint8]:
+    """The pixels of a golden image's scene as this computer's driver draws it."""
+    scene, size = SCENES[name]
+    target = context.simple_framebuffer(size)
+    renderer = Renderer(context, size, 1.0, 4)
+    renderer.draw(scene, drawn_walkers(scene), target)
+    pixels = renderer.read_pixels(target)
+    renderer.release()
+    target.release()
+    return pixels
+
+
 @pytest.mark.parametrize("name", SCENES)
-def test_golden_images_are_drawn_to_the_byte(draw: Draw, context: moderngl.Context, name: str) -> None:
+def test_golden_images_are_drawn_to_the_byte(context: moderngl.Context, name: str) -> None:
     """Drawn under the driver that golden/about.json names; `python -m tests.experiment_app.test_figures_and_parts`
     makes them anew after a wanted change."""
     about = json.loads((GOLDEN / "about.json").read_text(encoding="utf-8"))
@@ -191,18 +205,15 @@ def test_golden_images_are_drawn_to_the_byte(draw: Draw, context: moderngl.Conte
     if here != about:
         pytest.skip(f"golden images were made with {about['GL_RENDERER']}, here is {here['GL_RENDERER']}")
     with Image.open(GOLDEN / f"{name}.png") as golden:
-        assert np.array_equal(draw(SCENES[name]), np.asarray(golden))
+        assert np.array_equal(drawn_anew(context, name), np.asarray(golden))
 
 
 def make_golden() -> None:
     """Draws the golden images with this computer's driver."""
     context = moderngl.create_context(standalone=True, backend="egl", require=330)
-    target = context.simple_framebuffer(SIZE)
-    renderer = Renderer(context, SIZE, 1.0, 4)
     GOLDEN.mkdir(exist_ok=True)
-    for name, scene in SCENES.items():
-        renderer.draw(scene, drawn_walkers(scene), target)
-        Image.fromarray(renderer.read_pixels(target)).save(GOLDEN / f"{name}.png", optimize=True)
+    for name in SCENES:
+        Image.fromarray(drawn_anew(context, name)).save(GOLDEN / f"{name}.png", optimize=True)
     about = {key: context.info[key] for key in ("GL_RENDERER", "GL_VERSION")}
     (GOLDEN / "about.json").write_text(json.dumps(about, indent=1) + "\n", encoding="utf-8")
 

@@ -3,6 +3,7 @@
 // and light that is exactly a code stays that code.
 // The formula stands here because drivers' own encoding may be off by one code.
 uniform sampler2D linear_picture;
+uniform ivec2 corner;  // of the target's pixels, where the picture begins
 layout(location = 0) out vec4 pixel;
 
 float noise(vec2 at) {
@@ -10,9 +11,10 @@ float noise(vec2 at) {
 }
 
 void main() {
-    vec3 light = clamp(texelFetch(linear_picture, ivec2(gl_FragCoord.xy), 0).rgb, 0.0, 1.0);
+    vec2 at = gl_FragCoord.xy - vec2(corner);
+    vec3 light = clamp(texelFetch(linear_picture, ivec2(at), 0).rgb, 0.0, 1.0);
     vec3 low = light * 12.92;
     vec3 high = 1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055;
     vec3 encoded = mix(high, low, vec3(lessThanEqual(light, vec3(0.0031308))));
-    pixel = vec4(encoded + (noise(gl_FragCoord.xy) - 0.5) * 0.8 / 255.0, 1.0);
+    pixel = vec4(encoded + (noise(at) - 0.5) * 0.8 / 255.0, 1.0);
 }
