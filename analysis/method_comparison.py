@@ -21,7 +21,7 @@ from analysis.method_figures import (
 )
 from analysis.repeated_measures import anova
 
-ORDER = ("hermite", "pchip", "spline")
+ORDER = ("hermite", "pchip", "cubic")
 """Interpolations from the best to the worst as published (Niay 2022, section 5.2.1)."""
 
 
@@ -101,7 +101,7 @@ def published_order(errors: Sequence[RebuildingError], table: pd.DataFrame) -> l
         f"Five points against four: {count[5].mean():.1f} and {count[4].mean():.1f} mm; the data "
         f"{'agree' if better else 'DO NOT agree'} with the published result that five are better.",
         f"Interpolations from the best: {sorted_ways}; the data {'agree' if ordered else 'DO NOT agree'} with the "
-        f"published order Hermite, PCHIP, spline. Hermite is best for {100 * share:.0f} % of people.",
+        f"published order Hermite, PCHIP, cubic spline. Hermite is best for {100 * share:.0f} % of people.",
         f"Interaction of points and interpolation: published not significant (p = .237), here "
         f"p = {both:.3g}; the data {'agree' if both >= 0.05 else 'DO NOT agree'}.",
     ]

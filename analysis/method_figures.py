@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from analysis.drawing import COLOURS, settings
 
 Floats = NDArray[np.floating]
-WAYS = ("spline", "pchip", "hermite")
+WAYS = ("cubic", "pchip", "hermite")
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
+from stimuli.methods.recipe import Making
+
 View = Literal["three_quarter", "side", "front", "legs"]
 Ground = Literal["open_ground", "treadmill", "plain"]
 
@@ -15,6 +17,7 @@ class Walker:
 
     actor:          name of the actor whose motion is shown.
     body:           name of a body or of a figure without one (point_light, stick_figure, ...); "" the actor's own.
+    making:         the method that makes the walk at that speed; None the actor as captured, at `step_frequency`.
     speed:          m/s; step_frequency: steps/min.
     phase:          in [0, 1), 0 at right heel strike.
     distance:       m walked along +Z since the walker was placed (0 on a treadmill).
@@ -28,6 +31,7 @@ class Walker:
     distance: float = 0.0
     place: tuple[float, float] = (0.0, 0.0)
     body: str = ""
+    making: Making | None = None
 
 
 @dataclass(frozen=True)

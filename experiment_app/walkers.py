@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
+
 from experiment_app.render.drawn import DrawnWalker
 from experiment_app.scene import Scene, Walker
 from stimuli.actors import Actor, load_actor
@@ -12,6 +14,9 @@ from stimuli.bodies import load_body, scaled, shipped_names
 from stimuli.body import Body
 from stimuli.body_retarget import on_its_own_soles
 from stimuli.measure import delivered_gait
+from stimuli.methods.delivery import delivered
+from stimuli.methods.made import MadeWalk, made_walk
+from stimuli.methods.recipe import Making
 from stimuli.point_light import FIGURES, figure_lines, resting
 from stimuli.skeleton import Floats
 from stimuli.walker import drawn_pose, skin_matrices
@@ -47,13 +52,28 @@ def drawn_walkers(scene: Scene) -> tuple[DrawnWalker, ...]:
 
 def _drawn(walker: Walker, on_the_spot: bool, seed: int) -> DrawnWalker:
     actor, body = cast(walker.actor, walker.body)
-    pose = drawn_pose(actor, walker.speed, walker.step_frequency, walker.phase)
     x, z = walker.place
-    matrices = skin_matrices(actor, pose)
+    matrices = _matrices(actor, walker)
     lines = None
     if walker.body in FIGURES:
         lines = figure_lines(walker.body, _resting_markers(walker.actor), matrices, actor.height, seed)
     return DrawnWalker(body, matrices, (x, 0.0, z if on_the_spot else z + walker.distance), lines)
+
+
+def _matrices(actor: Actor, walker: Walker) -> Floats:
+    """(21, 3, 4) float32 of the walker's pose, as captured or as made; a walk of a larger person is drawn larger."""
+    if walker.making is None:
+        return skin_matrices(actor, drawn_pose(actor, walker.speed, walker.step_frequency, walker.phase))
+    walk = made_walk(actor, walker.making, walker.speed)
+    return np.float32(walk.size) * skin_matrices(actor, walk.pose(walker.phase))
+
+
+def walk_of(actor: str, body: str, making: Making, speed: float) -> MadeWalk:
+    """The walk a making gives this actor at a speed (m/s); made once, so that a trial can begin without waiting.
+
+    Raises MethodError or CoverageError, with a sentence, where it cannot be made.
+    """
+    return made_walk(cast(actor, body)[0], making, speed)
 
 
 def measured_gait(scene: Scene) -> dict[str, float]:
@@ -67,12 +87,28 @@ def measured_gait(scene: Scene) -> dict[str, float]:
     if not scene.walkers:
         return {}
     walker = scene.walkers[0]
-    gait = delivered_gait(cast(walker.actor, walker.body)[0], walker.speed, walker.step_frequency)
+    actor = cast(walker.actor, walker.body)[0]
+    if walker.making is not None:
+        return _measured_making(actor, walker, walker.making)
+    gait = delivered_gait(actor, walker.speed, walker.step_frequency)
     return {
         "speed": gait.speed,
         "step_frequency": gait.step_frequency,
         "step_length": gait.step_length,
         "walk_ratio": gait.walk_ratio,
         "slide_mean_mm": gait.slide_mean,
+        "slide_peak_mm": gait.slide_peak,
+    }
+
+
+def _measured_making(actor: Actor, walker: Walker, making: Making) -> dict[str, float]:
+    gait = delivered(made_walk(actor, making, walker.speed).at_gait(walker.speed, walker.step_frequency))
+    step_length = 60.0 * gait.speed / gait.step_frequency
+    return {
+        "speed": gait.speed,
+        "step_frequency": gait.step_frequency,
+        "step_length": step_length,
+        "walk_ratio": step_length / gait.step_frequency,
+        "slide_mean_mm": gait.slide,
         "slide_peak_mm": gait.slide_peak,
     }

@@ -30,6 +30,7 @@ class Delivered:
     nominal_speed:  m/s, stride length over stride time
     step_frequency: steps/min
     slide:          mm a foot drifts over the ground in the inner 70 % of stance, mean of both, moved at nominal speed
+    slide_peak:     mm, the same of the foot that drifts more
     knee_least:     deg, least flexion of either knee (negative is overstretched)
     double_support: share of the cycle with both feet in stance
     """
@@ -38,6 +39,7 @@ class Delivered:
     nominal_speed: float
     step_frequency: float
     slide: float
+    slide_peak: float
     knee_least: float
     double_support: float
 
@@ -64,6 +66,7 @@ def delivered(cycle: Cycle) -> Delivered:
         nominal_speed=nominal,
         step_frequency=120.0 / cycle.stride_time,
         slide=1e3 * float(np.mean(slides)),
+        slide_peak=1e3 * float(np.max(slides)),
         knee_least=float(np.degrees(min(knees))),
         double_support=float(np.mean(standing[0] & standing[1])),
     )

@@ -1,4 +1,4 @@
-"""What every method shares: its error, where a made cycle says it comes from, and looking into a cycle at any phase."""
+"""What every method shares: where a made cycle says it comes from, and looking into a cycle at any phase."""
 
 from __future__ import annotations
 
@@ -8,12 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from stimuli.cycle import Cycle, Provenance
+from stimuli.methods.errors import MethodError as MethodError
 from stimuli.rotations import normalise, slerp
 from stimuli.skeleton import Floats
-
-
-class MethodError(ValueError):
-    """A method cannot make the walk that is asked for; the message is a sentence for people."""
 
 
 def check_speed(speed: float, lowest: float = 0.1, highest: float = 4.0) -> None:

@@ -12,13 +12,13 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline, PchipInterpolator
 from stimuli.poulaine.curve import FIVE, FOUR, ControlPoints, Poulaine, PoulaineError, characteristic_points
 from stimuli.skeleton import Floats
 
-INTERPOLATIONS: tuple[str, ...] = ("spline", "pchip", "hermite")
+INTERPOLATIONS: tuple[str, ...] = ("cubic", "pchip", "hermite")
 
 
 def rebuilt(points: ControlPoints, interpolation: str, phases: Floats) -> Floats:
     """(M, 2) m: x and z at phases (M,) in [0, 1).
 
-    interpolation: "spline" (periodic cubic, twice differentiable), "pchip" (monotonic between points; Fritsch &
+    interpolation: "cubic" (periodic cubic, twice differentiable), "pchip" (monotonic between points; Fritsch &
     Butland 1984) or "hermite" (places and first derivatives of the points).
     """
     if interpolation not in INTERPOLATIONS:
@@ -28,7 +28,7 @@ def rebuilt(points: ControlPoints, interpolation: str, phases: Floats) -> Floats
     if len(knots) < 3 or np.diff(np.append(knots, knots[0] + 1.0)).min() < 1e-4:
         raise PoulaineError("two points of the poulaine are passed at once; it cannot be rebuilt from them")
     inside = knots[0] + np.mod(phases - knots[0], 1.0)
-    if interpolation == "spline":
+    if interpolation == "cubic":
         closed = np.concatenate([places, places[:1]])
         return np.asarray(CubicSpline(np.append(knots, knots[0] + 1.0), closed, bc_type="periodic")(inside))
     thrice = np.concatenate([knots - 1.0, knots, knots + 1.0])

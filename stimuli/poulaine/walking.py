@@ -31,7 +31,7 @@ OUT_OF_REACH = 0.12
 
 
 def poulaine_walk(cycle: Cycle, count: int = 5, interpolation: str = "hermite") -> Cycle:
-    """The cycle with both ankles on poulaines rebuilt from 4 or 5 points ("spline", "pchip" or "hermite")."""
+    """The cycle with both ankles on poulaines rebuilt from 4 or 5 points ("cubic", "pchip" or "hermite")."""
     paths = [rebuilt(chosen_points(poulaine_of(cycle, side), count), interpolation, cycle.phases) for side in SIDES]
     return replace(
         with_paths(cycle, np.array(paths)), provenance=made_by("poulaine", f"{count} points, {interpolation}", cycle)
@@ -45,16 +45,18 @@ def poulaine_to_speed(
     change: Change | None = None,
     count: int = 5,
     detail: bool = False,
+    interpolation: str = "hermite",
 ) -> Cycle:
-    """The walk at another speed (m/s): points moved by the table's coefficients, Hermite, inverse kinematics.
+    """The walk at another speed (m/s): points moved by the table's coefficients, rebuilt, inverse kinematics.
 
     table: "raw", "normalised" or "refitted"; change: also another height or sex (its speed is not read).
-    detail: False as in the source; True adds back what the captured curve has beyond its own Hermite curve.
+    detail: False as in the source; True adds back what the captured curve has beyond its own rebuilding.
+    interpolation: as in `rebuilt`; Hermite in the source.
     The stride grows as the extent of the poulaine from I to E does, and the stride time gives the speed.
     """
     check_speed(speed, *SPEEDS)
     edit = replace(change or Change(), speed=speed - cycle.gait.speed)
-    made = _edited(cycle, edit, table, count, detail)
+    made = _edited(cycle, edit, table, count, detail, interpolation)
     return replace(made, stride_time=made.stride_length / speed)
 
 
@@ -130,7 +132,9 @@ def with_paths(cycle: Cycle, paths: Floats) -> Cycle:
     return replace(bent_cycle, hips=cycle.hips - [0.0, float(np.mean(sunk)), 0.0])
 
 
-def _edited(cycle: Cycle, change: Change, table: str, count: int, detail: bool = False) -> Cycle:
+def _edited(
+    cycle: Cycle, change: Change, table: str, count: int, detail: bool = False, interpolation: str = "hermite"
+) -> Cycle:
     regression = regression_table(table)
     size = _size(cycle, change)
     grown = replace(cycle, offsets=cycle.offsets * size, hips=cycle.hips * size)
@@ -139,11 +143,11 @@ def _edited(cycle: Cycle, change: Change, table: str, count: int, detail: bool =
     moved = regression.moved(change, leg_length(grown))
     after = [edited_points(points, moved) for points in start]
     growth = float(np.mean([_extent(b) / _extent(a) for a, b in zip(before, after, strict=True)]))
-    paths = np.array([rebuilt(points, "hermite", cycle.phases) for points in after])
+    paths = np.array([rebuilt(points, interpolation, cycle.phases) for points in after])
     if detail:
         paths += size * np.array(
             [
-                poulaine_of(cycle, side).xz - rebuilt(points, "hermite", cycle.phases)
+                poulaine_of(cycle, side).xz - rebuilt(points, interpolation, cycle.phases)
                 for side, points in zip(SIDES, before, strict=True)
             ]
         )

@@ -52,7 +52,7 @@ def walk_ratio_actors() -> pd.DataFrame:
 
 def poulaine_reconstruction() -> pd.DataFrame:
     data = pd.DataFrame(
-        rows(8, (4, 5), ("spline", "pchip", "hermite"), ACTORS, ("slow", "comfort", "fast"), (1, 2)),
+        rows(8, (4, 5), ("cubic", "pchip", "hermite"), ACTORS, ("slow", "comfort", "fast"), (1, 2)),
         columns=["participant", "points", "interpolation", "actor", "speed", "rep"],
     )
     data["gender"] = np.where(data["participant"].str[-1].astype(int) % 2, "f", "m")

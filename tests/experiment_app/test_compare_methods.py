@@ -45,8 +45,8 @@ def errors_of(values):
 
 
 PUBLISHED = {
-    (4, "spline"): 0.05, (4, "pchip"): 0.03, (4, "hermite"): 0.025,
-    (5, "spline"): 0.04, (5, "pchip"): 0.02, (5, "hermite"): 0.015,
+    (4, "cubic"): 0.05, (4, "pchip"): 0.03, (4, "hermite"): 0.025,
+    (5, "cubic"): 0.04, (5, "pchip"): 0.02, (5, "hermite"): 0.015,
 }  # fmt: skip
 
 
