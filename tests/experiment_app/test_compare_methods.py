@@ -25,7 +25,7 @@ def test_the_report_has_every_method_at_three_speeds_and_pictures(tmp_path, monk
     assert "reduction factor" in text
     assert "from 0 to 10 km/h" in text
     assert "drawn ones" in text
-    assert "published order Hermite, PCHIP, spline" in capsys.readouterr().out
+    assert "published order Hermite, PCHIP, cubic spline" in capsys.readouterr().out
 
 
 @pytest.mark.skipif(not CMU.is_dir(), reason="the shared captures are not beside the checkout")
