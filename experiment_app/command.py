@@ -28,7 +28,6 @@ app.command(clip)
 app.command(actor_commands)
 app.command(body_commands)
 
-Data = Annotated[Path, Parameter(help="Folder of all data; each study has its own folder in it.")]
 StudyArgument = Annotated[str, Parameter(help="A study file (YAML), or the name of a shipped study: walk_ratio.")]
 
 
@@ -79,7 +78,13 @@ def run_study(
     study: StudyArgument,
     *,
     participant: Annotated[str, Parameter(help="The participant's ID: letters and digits, as P01.")],
-    data: Data = Path("data"),
+    data: Annotated[
+        Path | None,
+        Parameter(help="Folder of all data; each study has its own folder in it. By default data, or pilot."),
+    ] = None,
+    pilot: Annotated[
+        bool, Parameter(negative="", help="A pilot run: kept in a folder of its own, never among real data.")
+    ] = False,
     window: Annotated[bool, Parameter(negative="", help="In a window instead of full screen.")] = False,
     size: Annotated[str, Parameter(help="Size of the window.")] = "1280x720",
     display: Annotated[int, Parameter(help="Number of the display, from 1.")] = 1,
@@ -101,8 +106,8 @@ def run_study(
     from experiment_app.live import run_live
 
     return run_live(
-        study, participant, data, full_screen=not window, size=_size(size), display=display, refresh=refresh, seed=seed,
-        new_run=new_run, resume=resume, ask=_ask, say=_say,
+        study, participant, data or Path("pilot" if pilot else "data"), full_screen=not window, size=_size(size),
+        display=display, refresh=refresh, seed=seed, new_run=new_run, pilot=pilot, resume=resume, ask=_ask, say=_say,
     )  # fmt: skip
 
 

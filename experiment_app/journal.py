@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from queue import SimpleQueue
@@ -23,12 +24,16 @@ DURABLE = (Header, TrialRecord, Ended)
 
 
 class Journal:
-    """An open journal. Use as a context manager; leaving it writes what is queued and closes the file."""
+    """An open journal. Use as a context manager; leaving it writes what is queued and closes the file.
+
+    Leaving it by an exception, or when the disk refuses a record, is written down as an end with its reason.
+    """
 
     def __init__(self, file: IO[bytes], path: Path) -> None:
         self.path = path
         self._file = file
         self._queue: SimpleQueue[Record | None] = SimpleQueue()
+        self._time = 0.0
         self._queued = 0
         self._saved = 0
         self._failure: Exception | None = None
@@ -40,6 +45,7 @@ class Journal:
         """Queues records in order; raises RunError when an earlier one could not be written."""
         self._check()
         for record in records:
+            self._time = getattr(record, "time", self._time)
             self._queued += 1
             self._queue.put(record)
 
@@ -65,8 +71,10 @@ class Journal:
     def __enter__(self) -> Journal:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
         try:
+            if kind is not None and self._failure is None:
+                self.write([Ended(self._time, f"failed: {kind.__name__}: {error}"[:300])])
             self.close()
         except RunError:
             if kind is None:
@@ -89,9 +97,16 @@ class Journal:
                         os.fsync(self._file.fileno())
                 except Exception as error:  # whatever it is, the loop must learn of it and not wait for ever
                     self._failure = error
+                    self._last_words(error)
             with self._idle:
                 self._saved += self._failure is None
                 self._idle.notify_all()
+
+    def _last_words(self, failure: Exception) -> None:
+        """Tries once to add why the run ends here; a full disk often has room for one short line."""
+        with suppress(Exception):
+            append_line(self._file, encode_line(Ended(self._time, f"not written: {_reason(failure)}"[:120])))
+            os.fsync(self._file.fileno())
 
 
 def append_line(file: IO[bytes], line: str) -> None:

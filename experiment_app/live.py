@@ -5,17 +5,19 @@ from __future__ import annotations
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
 
 from experiment_app.check import check_names, checked_study, refuse_mistakes
+from experiment_app.crash_note import crash_note
 from experiment_app.errors import RunError, UsageError
 from experiment_app.loop import run_session
-from experiment_app.opening import OpenRun, open_new, open_unfinished, unfinished_run
+from experiment_app.opening import OpenRun, kind_of, open_new, open_unfinished, refuse_mixed, unfinished_run
 from experiment_app.run_folder import Run, check_participant, first_headers
-from experiment_app.simulate import refuse_mixed
 from experiment_app.walkers import cast
 from experiment_app.windows.desktop import DesktopWindow
+from protocols import resuming
 from protocols.design import Trial
 from protocols.plan import Plan, TrialStep, value_of
 from protocols.session import begin
@@ -35,6 +37,7 @@ def run_live(
     refresh: float,
     seed: int | None,
     new_run: bool,
+    pilot: bool = False,
     resume: Literal["ask", "yes", "no"],
     ask: Callable[[str], bool],
     say: Callable[[str], None],
@@ -42,7 +45,7 @@ def run_live(
     """Runs the study with a participant and returns the exit status; see the command's help for the arguments."""
     check_participant(participant)
     file = checked_study(study)
-    refuse_mixed(data, file.study.study, simulated=False)
+    refuse_mixed(data, file.study.study, kind_of(False, pilot))
     others = [h["participant"] for h in first_headers(data, file.study.study) if h["study_hash"] != file.hash]
     if others:
         say(f"Note: {', '.join(others[:5])} took part with another version of this study file.")
@@ -56,6 +59,8 @@ def run_live(
     ) as window:
         if old is not None:
             opened = open_unfinished(old, display=window.description())
+            if opened.torn:
+                say(f"The last line was cut off; its {opened.torn} bytes were set aside beside {old.journal}.")
         else:
             opened = open_new(
                 file,
@@ -63,27 +68,54 @@ def run_live(
                 data,
                 display=window.description(),
                 simulated=False,
+                pilot=pilot,
                 seed=seed,
                 again=new_run,
             )
-        with opened.journal as journal, ending_signals(window.request_end):
+        sitting = crash_note(opened.run.folder, opened.run.sittings + 1)
+        with sitting, opened.journal as journal, ending_signals(window.request_end):
             prepare(opened.plan)
             session = run_session(begin(opened.plan), window, journal)
-    return _farewell(opened, f"gaitlab run {study} --participant {participant} --data {data}", session.ended, say)
+    command = f"gaitlab run {study} --participant {participant} --data {data}{' --pilot' if pilot else ''}"
+    return _farewell(opened, command, session.ended, say)
 
 
 def _continues(old: Run, file: StudyFile, resume: str, ask: Callable[[str], bool], say: Callable[[str], None]) -> bool:
-    """Whether the unfinished run is to be continued; says how to go on when it is not."""
+    """Whether the unfinished run is to be continued; says how to go on when it is not.
+
+    Raises UsageError when the study file that the run was begun with does not let it go on.
+    """
+    kept = parse_study(f"{old.journal} (the study file it holds)", old.header["study_text"])
+    gap = _minutes_since(old, say)
+    why_not = resuming.refusal(kept.study.resume, gap)
+    if why_not:
+        raise UsageError(
+            f"participant {old.participant}'s run in {old.folder} cannot be continued: {why_not}. It stays as it is; "
+            f"--new-run records another run for {old.participant}."
+        )
     done = len({line["number"] for line in old.lines if line["kind"] == "trial" and not line["practice"]})
-    question = f"Participant {old.participant} has an unfinished run with {done} trials done. Continue it?"
+    begins = " Its last block begins again." if kept.study.resume.policy == "block" else ""
+    question = (
+        f"Participant {old.participant} has an unfinished run with {done} trials done ({old.interruption}).{begins} "
+        "Continue it?"
+    )
     if resume == "no" or (resume == "ask" and not ask(question)):
         say(f"Nothing was changed. Use --new-run to record a new run for {old.participant}.")
         return False
     if old.header["study_hash"] != file.hash:
-        kept = parse_study(f"{old.journal} (the study file it holds)", old.header["study_text"])
         refuse_mistakes(kept, check_names(kept))
         say("The study file has changed since; the run goes on with the study it was begun with.")
     return True
+
+
+def _minutes_since(old: Run, say: Callable[[str], None]) -> float:
+    """Minutes of the wall clock since the run's latest record; 0 with a note when the clock was set back since."""
+    if old.last_written is None:
+        return 0.0
+    gap = (datetime.now(UTC) - old.last_written).total_seconds() / 60.0
+    if gap < -1.0:
+        say("Note: the computer's clock reads earlier than the run's last record; how long ago that was is not known.")
+    return max(gap, 0.0)
 
 
 def prepare(plan: Plan) -> None:

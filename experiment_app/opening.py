@@ -12,7 +12,16 @@ from typing import Any
 
 from experiment_app.errors import UsageError
 from experiment_app.journal import Journal, create_journal, reopen_journal
-from experiment_app.run_folder import Run, new_run, participant_number, participant_runs, progress, run_numbers
+from experiment_app.run_folder import (
+    Run,
+    first_headers,
+    new_run,
+    participant_number,
+    participant_runs,
+    progress,
+    run_numbers,
+)
+from protocols import resuming
 from protocols.design import default_seed, make_trials, practice_trials
 from protocols.plan import Plan, keys_of, make_plan, value_of
 from protocols.record import Continued, Header
@@ -33,6 +42,7 @@ class OpenRun:
     seed: int
     participant_number: int
     continued: bool
+    torn: int = 0  # bytes of a line that was cut off, set aside when the run was opened again
 
 
 def unfinished_run(data: Path, study: str, participant: str) -> Run | None:
@@ -48,11 +58,16 @@ def open_new(
     *,
     display: Mapping[str, Any],
     simulated: bool,
+    pilot: bool = False,
     seed: int | None = None,
     again: bool = False,
 ) -> OpenRun:
-    """A new run; raises UsageError when the participant has finished one and `again` is not set."""
+    """A new run; raises UsageError when the participant has finished one and `again` is not set.
+
+    Raises UsageError too when the folder holds runs of another kind: real, pilot and simulated ones never mix.
+    """
     name = study.study.study
+    refuse_mixed(data, name, kind_of(simulated, pilot))
     runs = [] if again else participant_runs(data, name, participant)
     if runs:
         how = {"": "has an unfinished run", "finished": "has already finished", "declined": "has declined"}
@@ -79,19 +94,36 @@ def open_new(
         display=display,
         started=_utc_now(),
         walkers=_provenance(study.study),
+        pilot=pilot,
     )
     return OpenRun(run, make_plan(study.study, seed, order), create_journal(run, header), seed, order, False)
 
 
 def open_unfinished(run: Run, *, display: Mapping[str, Any]) -> OpenRun:
-    """An unfinished run again, from its own copy of the study, at the first thing not done."""
+    """An unfinished run again, from its own copy of the study, at the first thing its policy has to be done."""
     header = run.header
     study = parse_study(f"{run.journal} (the study file it holds)", header["study_text"]).study
     plan = make_plan(study, header["seed"], header["participant_number"])
     journal, run, torn = reopen_journal(run)
-    journal.write([Continued(0.0, _utc_now(), torn, display, _versions())])
-    plan = remaining(plan, progress(run))
-    return OpenRun(run, plan, journal, header["seed"], header["participant_number"], True)
+    journal.write([Continued(0.0, _utc_now(), torn, display, _versions(), run.interruption)])
+    plan = remaining(plan, resuming.again(plan, progress(run)))
+    return OpenRun(run, plan, journal, header["seed"], header["participant_number"], True, torn)
+
+
+def kind_of(simulated: bool, pilot: bool) -> str:
+    """What a run is: "simulated", "pilot" or "real"."""
+    return "simulated" if simulated else "pilot" if pilot else "real"
+
+
+def refuse_mixed(data: Path, study: str, kind: str) -> None:
+    """Raises UsageError when the folder holds runs of another kind: real, pilot and simulated runs never mix."""
+    for header in first_headers(data, study):
+        here = kind_of(bool(header.get("simulated")), bool(header.get("pilot")))
+        if here != kind:
+            raise UsageError(
+                f"{data / study} holds {here} participants ({header['participant']}); {kind} ones must not be "
+                "mixed with them: choose another folder with --data."
+            )
 
 
 def _provenance(study: Study) -> dict[str, str]:

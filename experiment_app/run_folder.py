@@ -9,9 +9,11 @@ from __future__ import annotations
 import os
 import re
 from dataclasses import dataclass
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import IO, Any
 
+from experiment_app.crash_note import crash_reason
 from experiment_app.errors import UsageError
 from protocols.record import DamagedLineError, decode_line
 from protocols.session import Progress
@@ -20,6 +22,9 @@ PARTICIPANT = re.compile(r"[A-Za-z0-9]{1,32}")
 """Participant IDs: letters and digits only, as the labels of BIDS."""
 
 JOURNAL = "journal.jsonl"
+
+WITHDRAWN = "withdrawn.jsonl"
+"""Beside sourcedata: one line for every place given back, and nothing else of those who withdrew."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +54,36 @@ class Run:
         final = [reason for reason in reasons if reason in ("finished", "declined", "withdrawn")]
         return final[0] if final else ""
 
+    @property
+    def sittings(self) -> int:
+        """How often the run was opened: once, and once more for every time it was continued."""
+        return sum(line["kind"] in ("header", "continue") for line in self.lines)
+
+    @property
+    def interruption(self) -> str:
+        """Why the latest sitting ended, as far as can be known from the journal or from a native fault's note."""
+        last = self._last_sitting
+        reasons = [line["reason"] for line in last if line["kind"] == "end"]
+        if reasons:
+            return str(reasons[-1])
+        crash = crash_reason(self.folder, self.sittings)
+        return f"crashed: {crash}" if crash else "no end was recorded: killed, or the power failed"
+
+    @property
+    def last_written(self) -> datetime | None:
+        """The wall clock's time (UTC) of the latest record; None when the journal does not tell."""
+        last = self._last_sitting
+        try:
+            begun = datetime.fromisoformat(last[0]["started"])
+            return begun + timedelta(seconds=max(line.get("time", 0.0) for line in last))
+        except (IndexError, KeyError, TypeError, ValueError, OverflowError):
+            return None
+
+    @property
+    def _last_sitting(self) -> tuple[dict[str, Any], ...]:
+        begun = [place for place, line in enumerate(self.lines) if line["kind"] in ("header", "continue")]
+        return self.lines[begun[-1] :] if begun else ()
+
 
 def check_participant(participant: str) -> str:
     """The ID itself; raises UsageError when it holds anything but letters and digits."""
@@ -77,9 +112,24 @@ def participant_runs(data: Path, study: str, participant: str) -> list[Run]:
 
 
 def participant_number(data: Path, study: str, participant: str) -> int:
-    """The participant's place in the order of arrival, from 1; the same in every run of the participant."""
+    """The participant's place in the order of arrival, from 1; the same in every run of the participant.
+
+    A place that somebody who withdrew has given back is filled first, so that the design stays balanced.
+    """
     known = {header["participant"]: int(header["participant_number"]) for header in first_headers(data, study)}
-    return known.get(participant, max(known.values(), default=0) + 1)
+    if participant in known:
+        return known[participant]
+    returned = places_given_back(study_folder(data, study))
+    free = sorted(set(returned) - set(known.values()))
+    return free[0] if free else max([*known.values(), *returned], default=0) + 1
+
+
+def places_given_back(folder: Path) -> list[int]:
+    """The places in the order of arrival that participants of a study's folder gave back by withdrawing."""
+    path = folder / WITHDRAWN
+    if not path.exists():
+        return []
+    return [int(line["participant_number"]) for line in journal_lines(path)[0]]
 
 
 def first_headers(data: Path, study: str) -> list[dict[str, Any]]:

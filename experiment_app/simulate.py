@@ -8,8 +8,8 @@ from pathlib import Path
 from experiment_app.errors import UsageError
 from experiment_app.loop import run_session
 from experiment_app.observer import SimulatedParticipant, draw_observer
-from experiment_app.opening import open_new, open_unfinished, unfinished_run
-from experiment_app.run_folder import Run, first_headers, participant_runs
+from experiment_app.opening import open_new, open_unfinished, refuse_mixed, unfinished_run
+from experiment_app.run_folder import Run, participant_runs
 from experiment_app.windows.undrawn import UndrawnWindow
 from protocols.design import default_seed
 from protocols.session import begin
@@ -24,7 +24,7 @@ def simulate(study: StudyFile, participants: int, data: Path, seed: int = 0, fir
     seed: the same seed gives the same participants, answers and responses. first: number of the first.
     Raises UsageError when real participants are in the folder, or the same ones simulated in another way.
     """
-    refuse_mixed(data, study.study.study, simulated=True)
+    refuse_mixed(data, study.study.study, "simulated")
     for number in range(first, first + participants):
         participant = f"S{number:03d}"
         own_seed = default_seed(f"{study.study.study}/{seed}", participant, 1)
@@ -54,15 +54,4 @@ def _refuse_stale(run: Run, study: StudyFile, seed: int) -> None:
         if not same:
             raise UsageError(
                 f"{run.folder} was simulated with {what}; choose another folder with --data, or remove that one."
-            )
-
-
-def refuse_mixed(data: Path, study: str, *, simulated: bool) -> None:
-    """Raises UsageError when the folder holds runs of the other kind: simulated among real or real among simulated."""
-    for header in first_headers(data, study):
-        if bool(header.get("simulated")) != simulated:
-            here, wanted = ("real", "simulated") if simulated else ("simulated", "real")
-            raise UsageError(
-                f"{data / study} holds {here} participants ({header['participant']}); {wanted} ones must not be "
-                "mixed with them: choose another folder with --data."
             )

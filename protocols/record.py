@@ -23,6 +23,7 @@ class Header:
 
     participant_number: order of arrival, from 1; keys: what lower, raise, confirm and break were for this participant.
     walkers: actor to where the walk comes from: captured, modelled, or how much of each.
+    pilot: a trial run of the study itself, whose data must never stand among real ones.
     """
 
     kind = "header"
@@ -39,6 +40,7 @@ class Header:
     display: Mapping[str, Any]
     started: str
     walkers: Mapping[str, str] = field(default_factory=dict)
+    pilot: bool = False
     format: int = FORMAT
 
 
@@ -158,7 +160,10 @@ class FrameIntervals:
 
 @dataclass(frozen=True)
 class Continued:
-    """An unfinished run was opened again; torn_bytes of an incomplete last line were set aside."""
+    """An unfinished run was opened again; torn_bytes of an incomplete last line were set aside.
+
+    interrupted: why the sitting before ended, as far as can be known.
+    """
 
     kind = "continue"
     time: float
@@ -166,6 +171,7 @@ class Continued:
     torn_bytes: int
     display: Mapping[str, Any]
     versions: Mapping[str, str]
+    interrupted: str = ""
 
 
 @dataclass(frozen=True)
@@ -177,9 +183,17 @@ class Ended:
     reason: str
 
 
+@dataclass(frozen=True)
+class Withdrawn:
+    """All that is kept of a participant who withdrew: that a place in the order of arrival is free again."""
+
+    kind = "withdrawn"
+    participant_number: int
+
+
 Record = (
     Header | Consented | Answered | PageShown | Key | TrialBegun | TrialRecord
-    | Paused | Resumed | FrameIntervals | Continued | Ended
+    | Paused | Resumed | FrameIntervals | Continued | Ended | Withdrawn
 )  # fmt: skip
 
 

@@ -366,6 +366,23 @@ class Simulation(Part):
     )
 
 
+class Resume(Part):
+    """What becomes of a run that was interrupted, by a stop, a crash or a power cut."""
+
+    policy: Literal["trial", "block", "never"] = Field(
+        "trial",
+        description="trial: goes on with the interrupted trial, again; block: with the first trial since the last "
+        "set break or since the block of the design began; never: the run stays unfinished.",
+    )
+    longest_gap: float | None = Field(
+        None,
+        strict=True,
+        gt=0.0,
+        allow_inf_nan=False,
+        description="min after the interruption within which the run can be continued; no limit when left out.",
+    )
+
+
 class Study(Part):
     """A whole study: participants, design, stimulus, task, texts, planned analysis."""
 
@@ -384,6 +401,7 @@ class Study(Part):
     )
     practice: list[Practice] = Field(default_factory=list, description="Training trials, in this order.")
     breaks: Breaks | None = None
+    resume: Resume = Resume()
     stimulus: Stimulus
     task: Adjustment
     interval: float = Field(0.5, strict=True, ge=0.1, le=10.0, description="s of empty screen between trials.")
