@@ -10,6 +10,10 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 
 class CoverageError(ValueError):
@@ -69,6 +73,53 @@ def blend_weights(tree: Tree, wanted: Mapping[str, float]) -> dict[int, float]:
         for cycle, weight in blend_weights(tree.children[child], wanted).items():
             weights[cycle] = weights.get(cycle, 0.0) + part * weight
     return weights
+
+
+def many_weights(tree: Tree, wanted: Mapping[str, NDArray[Any]]) -> tuple[NDArray[np.intp], NDArray[np.floating]]:
+    """`blend_weights` for N walkers at once: cycle indices and weights, both (N, M); unused places weigh nothing.
+
+    wanted: parameter -> (N,) values. Raises CoverageError outside the tree.
+    """
+    if isinstance(tree, Leaf):
+        count = len(next(iter(wanted.values())))
+        return np.full((count, 1), tree.cycle, np.intp), np.ones((count, 1))
+    values, places = np.asarray(wanted[tree.parameter]), np.array(tree.places)
+    for walker in (int(np.argmin(values)), int(np.argmax(values))):
+        _neighbours(tree, _of_one(wanted, walker))
+    low = np.clip(np.searchsorted(places, values, side="right") - 1, 0, max(len(places) - 2, 0))
+    high = np.minimum(low + 1, len(places) - 1)
+    share = np.clip((values - places[low]) / np.where(high > low, places[high] - places[low], 1.0), 0.0, 1.0)
+    if tree.follows:
+        follows = np.array(tree.follows)
+        off = np.abs(wanted["step_frequency"] - (1.0 - share) * follows[low] - share * follows[high])
+        worst = int(np.argmax(off))
+        one = _of_one(wanted, worst)
+        _check_following(tree, one, int(low[worst]), int(high[worst]), float(share[worst]))
+    sides = [_of_children(tree.children, child, part, wanted) for child, part in ((low, 1.0 - share), (high, share))]
+    return np.concatenate([cycles for cycles, _ in sides], axis=1), np.concatenate([part for _, part in sides], axis=1)
+
+
+def _of_one(wanted: Mapping[str, NDArray[Any]], walker: int) -> dict[str, float]:
+    return {parameter: float(values[walker]) for parameter, values in wanted.items()}
+
+
+def _of_children(
+    children: tuple[Leaf | Branch, ...], child: NDArray[np.intp], part: NDArray[Any], wanted: Mapping[str, NDArray[Any]]
+) -> tuple[NDArray[np.intp], NDArray[np.floating]]:
+    """Cycles and weights (N, M) that every walker takes from its own child, of which it wants a part (N,)."""
+    leaves = [node.cycle for node in children if isinstance(node, Leaf)]
+    if len(leaves) == len(children):
+        return np.array(leaves, np.intp)[child][:, None], part[:, None]
+    found = []
+    for number in np.unique(child[part > 0.0]):
+        own = np.flatnonzero((child == number) & (part > 0.0))
+        found.append((own, *many_weights(children[number], {name: v[own] for name, v in wanted.items()})))
+    width = max((cycles.shape[1] for _, cycles, _ in found), default=1)
+    cycles, weights = np.zeros((len(child), width), np.intp), np.zeros((len(child), width))
+    for own, chosen, shares in found:
+        cycles[own, : chosen.shape[1]] = chosen
+        weights[own, : chosen.shape[1]] = part[own, None] * shares
+    return cycles, weights
 
 
 def coverage(tree: Tree) -> dict[str, tuple[float, float]]:
