@@ -35,7 +35,7 @@ def many_matrices(mix: Mix, phases: Floats, out: Singles | None = None) -> Singl
     return out
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _pose_all(
     body: Any,
     feet: Any,
@@ -75,7 +75,7 @@ def _pose_all(
         _write(offsets[person], rest[person], turn, places, out[n])
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _blend(table: Any, rows: Any, weights: Any, samples: int, place: float, total: Any) -> None:
     position = place * samples
     sample = min(int(position), samples - 1)
@@ -90,7 +90,7 @@ def _blend(table: Any, rows: Any, weights: Any, samples: int, place: float, tota
             total[column] += here * first[column] + there * second[column]
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _turn_upper_body(columns: Any, turns: Any, turn: Any) -> None:
     for joint in range(UPPER_COUNT):
         bx, by, bz, bw = (
@@ -117,32 +117,32 @@ def _turn_upper_body(columns: Any, turns: Any, turn: Any) -> None:
         matrix[6], matrix[7], matrix[8] = 2 * (bx * bz - by * bw), 2 * (by * bz + bx * bw), 1 - 2 * (bx * bx + by * by)
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _clock(phase: float, stance: float) -> float:
     if phase < stance:
         return phase * (STANCE_END / stance)
     return STANCE_END + (phase - stance) * ((1.0 - STANCE_END) / (1.0 - stance))
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _smooth_step(x: float) -> float:
     x = min(max(x, 0.0), 1.0)
     return x * x * x * (10.0 + x * (-15.0 + 6.0 * x))
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _softly_positive(x: float) -> float:
     return max(x, 0.0) + log1p(exp(-abs(x)))
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _footprint_travel(phase: float, stance: float) -> float:
     if phase < stance:
         return -phase
     return -phase + _smooth_step((phase - stance) / ((1.0 - stance) * ARRIVAL))
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _place_foot(sole: Any, channels: Any, clock: float, place: float, stride: float, marks: Any) -> None:
     """marks: ankle (3), pitch, bend, yaw, knee yaw, clearance."""
     ankle_height, heel, ball, ball_height, tip = sole[0], sole[1], sole[2], sole[3], sole[4]
@@ -167,7 +167,7 @@ def _place_foot(sole: Any, channels: Any, clock: float, place: float, stride: fl
     marks[3], marks[4], marks[5], marks[6], marks[7] = pitch, bend, yaw, knee_yaw, clearance
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _pose_legs(legs: Any, marks: Any, places: Any, turn: Any) -> None:
     hips, hips_turn = places[0], turn[0]
     lowering = 0.0
@@ -188,7 +188,7 @@ def _pose_legs(legs: Any, marks: Any, places: Any, turn: Any) -> None:
         _turn_foot(marks[side, 5], marks[side, 3] + marks[side, 4], turn[19 + side])
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _solve(leg: Any, way: Any, knee_yaw: float, thigh: Any, shank: Any) -> None:
     dx, dy, dz = way[0], way[1], way[2]
     far = sqrt(dx * dx + dy * dy + dz * dz)
@@ -214,13 +214,13 @@ def _solve(leg: Any, way: Any, knee_yaw: float, thigh: Any, shank: Any) -> None:
         _times_rest(az, hz, hx * ay - hy * ax, rest, target[6:9])
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _times_rest(a: float, b: float, c: float, rest: Any, row: Any) -> None:
     for column in range(3):
         row[column] = a * rest[column] + b * rest[3 + column] + c * rest[6 + column]
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _turn_foot(yaw: float, pitch: float, matrix: Any) -> None:
     c, s, up, level = cos(yaw), sin(yaw), sin(pitch), cos(pitch)
     matrix[0], matrix[1], matrix[2] = c, -s * up, s * level
@@ -228,7 +228,7 @@ def _turn_foot(yaw: float, pitch: float, matrix: Any) -> None:
     matrix[6], matrix[7], matrix[8] = -s, -c * up, c * level
 
 
-@njit(cache=True)  # type: ignore[misc]
+@njit(cache=True)
 def _write(offsets: Any, rest: Any, turn: Any, places: Any, out: Any) -> None:
     for joint in range(len(_ABOVE)):
         above = turn[_ABOVE[joint]]

@@ -5,44 +5,15 @@ A figure is the fastest of several rounds, in CPU or wall time as said; the limi
 
 from __future__ import annotations
 
-import platform
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from itertools import product
 from pathlib import Path
 
-
-def fastest(function: Callable[[], object], rounds: int, repeats: int = 1) -> float:
-    """s of CPU time of this thread for one call, the fastest of several rounds."""
-    best = float("inf")
-    for _ in range(rounds):
-        begun = time.thread_time()
-        for _ in range(repeats):
-            function()
-        best = min(best, (time.thread_time() - begun) / repeats)
-    return best
-
-
-def machine() -> str:
-    """The processor's name and the number of its cores, as the system tells."""
-    import os
-
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        name = next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
-    except (OSError, StopIteration):
-        name = platform.processor() or platform.machine()
-    return f"{name}, {os.cpu_count()} cores, {platform.system()}, Python {platform.python_version()}"
-
-
-def row(what: str, seconds: float, limit: float) -> None:
-    """One line: the figure, its limit, and whether it was kept."""
-    unit, factor = ("ms", 1e3) if limit < 1.0 else ("s", 1.0)
-    verdict = "kept" if seconds <= limit else "MISSED"
-    print(f"{what:<64}{seconds * factor:9.3f} {unit:<3} limit {limit * factor:g} {unit}: {verdict}", flush=True)
+from tests.benchmarks.measuring import fastest, machine, row
+from tests.benchmarks.poses import poses
 
 
 def analysis_of_the_thesis() -> None:
@@ -61,19 +32,6 @@ def analysis_of_the_thesis() -> None:
     row("ANOVA of 22 x 96 rows", fastest(lambda: anova(data, "walk_ratio", "participant", within, "sex"), 15), 0.015)
     q, df = np.linspace(0.1, 9, 918), np.linspace(20, 200, 918)
     row("918 Tukey p values", fastest(lambda: survival(q, 24, df), 3), 1.0)
-
-
-def walker() -> None:
-    """One pose of the two-level tree of 25 cycles, forward kinematics and foot contact."""
-    from stimuli.actors import load_actor
-    from stimuli.walker import drawn_pose, skin_matrices
-
-    actor = load_actor("F1")
-
-    def pose() -> None:
-        skin_matrices(actor, drawn_pose(actor, 1.0, 87.0, 0.3))
-
-    row("a walker's pose and joint matrices", fastest(pose, 7, 200), 4e-4)
 
 
 def frame() -> None:
@@ -123,7 +81,7 @@ def help_text() -> None:
 def main() -> None:
     """Prints the machine and every figure."""
     print(machine())
-    for benchmark in (help_text, walker, frame, simulation, analysis_of_the_thesis):
+    for benchmark in (help_text, poses, frame, simulation, analysis_of_the_thesis):
         benchmark()
 
 
