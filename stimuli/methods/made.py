@@ -13,17 +13,18 @@ from functools import lru_cache
 import numpy as np
 
 from stimuli.actors import Actor
-from stimuli.blend_tree import Branch, Tree
+from stimuli.blend_tree import Branch, Tree, coverage
 from stimuli.cycle import Cycle
 from stimuli.kinematics import world_matrices
 from stimuli.measure import sole_points
-from stimuli.methods.actor_walks import actor_speeds, actor_walk, actor_walks
+from stimuli.methods.actor_walks import actor_speeds, actor_walk, natural_step_frequency
 from stimuli.methods.blend import blend_to_speed
 from stimuli.methods.errors import MethodError
-from stimuli.methods.fourier import fourier_to_speed, fourier_walk, synthesised
+from stimuli.methods.fourier import between, fourier_to_speed, fourier_walk, synthesised
 from stimuli.methods.making import hips_at, leg_length, rotations_at
 from stimuli.methods.pca import PcaWalk, pca_walk
 from stimuli.methods.recipe import Making
+from stimuli.methods.styles import style_named, styled
 from stimuli.methods.timewarp import timewarp
 from stimuli.poulaine.regression import Change
 from stimuli.poulaine.walking import poulaine_to_speed, poulaine_to_walk_ratio, poulaine_walk
@@ -93,7 +94,7 @@ def _source(actor: Actor, making: Making, speed: float) -> Cycle:
     chosen = making.source_speed
     if chosen is None:
         chosen = min(_others(actor, speed), key=lambda other: abs(other - speed))
-    return _captured_walk(actor, chosen, making.step_frequency)
+    return _walk(actor, making, chosen)
 
 
 def _around(actor: Actor, making: Making, speed: float) -> tuple[Cycle, Cycle]:
@@ -109,24 +110,38 @@ def _around(actor: Actor, making: Making, speed: float) -> tuple[Cycle, Cycle]:
             f"{actor.name} at {speed:.2f} m/s by {making.method}: it needs captured walks below and above that speed, "
             f"and there are {known} m/s"
         )
-    slower, faster = (_captured_walk(actor, s, making.step_frequency) for s in (max(below), min(above)))
+    slower, faster = (_walk(actor, making, s) for s in (max(below), min(above)))
     return slower, faster
 
 
+def _walk(actor: Actor, making: Making, speed: float) -> Cycle:
+    """The actor's captured walk at a speed (m/s), in the making's style."""
+    if making.style is None:
+        return _drawn(actor, speed, making.step_frequency)
+    return _drawn(styled(actor, making.style), speed, making.step_frequency or _tempo(actor, making.style, speed))
+
+
+def _tempo(actor: Actor, style: str, speed: float) -> float:
+    """steps/min of a style at a speed (m/s): the actor's own times the style's, within what the actor covers."""
+    own = natural_step_frequency(actor, speed)
+    low, high = coverage(actor.tree).get("step_frequency", (own, own))
+    return min(max(own * style_named(style).step_frequency, low), high)
+
+
 @lru_cache(maxsize=512)
-def _captured_walk(actor: Actor, speed: float, step_frequency: float | None) -> Cycle:
+def _drawn(actor: Actor, speed: float, step_frequency: float | None) -> Cycle:
     return actor_walk(actor, speed, step_frequency)
 
 
 @lru_cache(maxsize=64)
-def _engine(actor: Actor, speeds: tuple[float, ...]) -> PcaWalk:
-    return pca_walk(actor_walks(actor, speeds))
+def _engine(walks: tuple[Cycle, ...]) -> PcaWalk:
+    return pca_walk(walks)
 
 
 def _captured(actor: Actor, making: Making, speed: float) -> Cycle:
     if making.source_speed not in (None, speed):
         raise MethodError(f"a captured walk at {speed:.2f} m/s is not made from one at {making.source_speed:g} m/s")
-    return _captured_walk(actor, speed, making.step_frequency)
+    return _walk(actor, making, speed)
 
 
 def _blend(actor: Actor, making: Making, speed: float) -> Cycle:
@@ -138,8 +153,12 @@ def _timewarp(actor: Actor, making: Making, speed: float) -> Cycle:
 
 
 def _fourier(actor: Actor, making: Making, speed: float) -> Cycle:
-    if making.source_speed == speed:
-        return synthesised(fourier_walk(_source(actor, making, speed), making.harmonics))
+    if making.style is not None or making.source_speed == speed:
+        walk = fourier_walk(_walk(actor, making, speed), making.harmonics)
+        if making.share != 1.0:
+            own = fourier_walk(_walk(actor, replace(making, style=None, share=1.0), speed), making.harmonics)
+            walk = between(own, walk, making.share)
+        return replace(made := synthesised(walk), stride_time=made.stride_length / speed)
     return fourier_to_speed(*_around(actor, making, speed), speed, making.harmonics)
 
 
@@ -147,14 +166,14 @@ def _pca(actor: Actor, making: Making, speed: float) -> Cycle:
     speeds: Sequence[float] = _others(actor, speed)
     if len(speeds) < 3:
         speeds = [float(s) for s in actor_speeds(actor) if abs(s - speed) > SAME_SPEED]
-    engine = _engine(actor, tuple(speeds))
+    engine = _engine(tuple(_walk(actor, making, s) for s in speeds))
     leg = None if making.height is None else engine.leg_length * making.height / actor.height
     return engine.cycle(speed, leg)
 
 
 def _poulaine(actor: Actor, making: Making, speed: float) -> Cycle:
     if making.walk_ratio is not None:
-        source = _captured_walk(actor, speed, making.step_frequency)
+        source = _walk(actor, making, speed)
         return poulaine_to_walk_ratio(source, making.walk_ratio, making.table, making.points)
     change = _change(actor, making)
     if making.source_speed == speed and change == Change():

@@ -33,6 +33,9 @@ class Making:
     harmonics:      of the Fourier walk; 2 in the source.
     height, sex:    m and "F" or "M" of the person that the walk is edited towards (poulaine; pca knows height).
     walk_ratio:     m·min that the walk is edited towards at its own speed (poulaine).
+    style:          one of the named styles of styles.csv that the captured walks are in.
+    share:          of the way from the actor's own walk (0) to the style (1) in the space of Fourier walks; beyond 1 it
+                    exaggerates (fourier).
 
     Raises MethodError for a value that no method knows.
     """
@@ -47,6 +50,8 @@ class Making:
     height: float | None = None
     sex: Literal["F", "M"] | None = None
     walk_ratio: float | None = None
+    style: str | None = None
+    share: float = 1.0
 
     def __post_init__(self) -> None:
         _one_of("method", self.method, get_args(MethodName))
@@ -57,6 +62,8 @@ class Making:
         for field, methods in EDITORS.items():
             if getattr(self, field) is not None and self.method not in methods:
                 raise MethodError(f"{field}: {self.method} cannot edit it; {' and '.join(methods)} can")
+        if self.share != 1.0 and (self.method != "fourier" or self.style is None):
+            raise MethodError("share: only a fourier walk in a style can be part of the way to it")
 
 
 def _one_of(field: str, value: object, allowed: Sequence[object]) -> None:

@@ -1,0 +1,109 @@
+"""Eleven named styles of walking, made from the gait model, and an actor who walks in one of them.
+
+The names are those of the eleven styles of the Mockey database that Tilmanne & Dutoit analysed; that database cannot be
+shipped, so these are made, not captured: each changes the mean posture and the range of some signals of the gait model
+by the amounts of styles.csv, and the legs follow by the same inverse kinematics as any walk. They stand for styles of
+different content (posture, range, width, tempo), not for what an actor performs; like every walk of the model the left
+step mirrors the right one, so the drunken style has no two different steps. Captured styles are imported as actors.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
+from importlib.resources import files
+
+import numpy as np
+
+from stimuli.actor_library import imported_names, read_stored
+from stimuli.actors import CYCLE_SPEEDS, METRONOME, Actor, people, walk_coefficients
+from stimuli.blend import CycleTable
+from stimuli.gait_model import SIGNALS, load_gait_model
+from stimuli.methods.errors import MethodError
+from stimuli.retarget import walk_cycle
+from stimuli.skeleton import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Style:
+    """A way of walking as a change of any walk of the gait model.
+
+    shift:          (S,) rad or leg lengths added to the mean of each signal
+    gain:           (S,) by which each signal's harmonics are multiplied
+    step_frequency: times the actor's own at the same speed
+    """
+
+    name: str
+    shift: Floats
+    gain: Floats
+    step_frequency: float
+
+    def applied(self, coefficients: Floats) -> Floats:
+        """(S, C) coefficients of a walk, in this style."""
+        changed = coefficients * self.gain[:, None]
+        changed[:, 0] = coefficients[:, 0] + self.shift
+        return changed
+
+
+@cache
+def styles() -> dict[str, Style]:
+    """Name -> style, as styles.csv lists them."""
+    text = (files("stimuli.methods") / "styles.csv").read_text(encoding="utf-8")
+    found: dict[str, Style] = {}
+    for row in csv.DictReader(line for line in text.splitlines() if not line.startswith("#")):
+        name = row["style"]
+        style = found.setdefault(name, Style(name, np.zeros(len(SIGNALS)), np.ones(len(SIGNALS)), 1.0))
+        if row["signal"] == "step_frequency":
+            found[name] = replace(style, step_frequency=float(row["gain"]))
+            continue
+        for signal in _signals(row["signal"]):
+            style.shift[signal] += float(row["shift"] or 0.0)
+            style.gain[signal] *= float(row["gain"] or 1.0)
+    return found
+
+
+def style_named(name: str) -> Style:
+    """Raises MethodError for a style that is not known."""
+    if name not in styles():
+        raise MethodError(f"style: there is no {name!r}; there are {', '.join(styles())}")
+    return styles()[name]
+
+
+@lru_cache(maxsize=64)
+def styled(actor: Actor, name: str) -> Actor:
+    """The actor walking in a style, on the same body, at the same speeds and step frequencies.
+
+    Raises MethodError for a style that is not known.
+    """
+    style = style_named(name)
+    cycles = [
+        walk_cycle(actor.figure, style.applied(coefficients), stance, speed, frequency)
+        for coefficients, stance, speed, frequency in _ingredients(actor)
+    ]
+    return replace(
+        actor, table=CycleTable.of(cycles), provenance=f"{actor.provenance}; {name} style made from the model"
+    )
+
+
+def _ingredients(actor: Actor) -> Iterator[tuple[Floats, float, float, float]]:
+    """Coefficients, stance share, speed and step frequency of every cycle of the actor's table, in its order."""
+    if actor.name in imported_names():
+        for cycle in read_stored(actor.name).cycles:
+            yield cycle.coefficients, cycle.stance, cycle.speed, cycle.step_frequency
+        return
+    person, model = people()[actor.name], load_gait_model()
+    manner = model.manner(dict(person.manner))
+    for frequency in METRONOME:
+        for speed in CYCLE_SPEEDS:
+            coefficients, stance = walk_coefficients(model, person, manner, actor.figure.leg_length, speed, frequency)
+            yield coefficients, stance, speed, frequency
+
+
+def _signals(pattern: str) -> list[int]:
+    """Indices of a signal, or of all three axes of a segment."""
+    found = [index for index, name in enumerate(SIGNALS) if name == pattern or name[:-2] == pattern]
+    if not found:
+        raise ValueError(f"styles.csv: the gait model has no signal {pattern!r}")
+    return found
