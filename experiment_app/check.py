@@ -132,7 +132,7 @@ def text_notes(study: Study) -> list[str]:
     from experiment_app.render.fonts import can_shape, missing_glyphs, needs_shaping
 
     texts = "".join(sorted(set("".join(_texts(study.model_dump())))))
-    notes = [*_unused_factors(study), *_wrong_arrows(study), *_small_pages(study)]
+    notes = [*_unused_factors(study), *_wrong_arrows(study), *_small_pages(study), *_untrue_perspective(study)]
     if not study.language.startswith("en") and study.words == Words():
         notes.append(f"language is {study.language}, but the buttons and hints are English; translate them in words.")
     missing = sorted(missing_glyphs(texts))
@@ -160,6 +160,15 @@ def _wrong_arrows(study: Study) -> Iterator[str]:
     for sign, key in (("←", "left"), ("→", "right")):
         if sign in told and key not in (keys.lower, keys.raise_):
             yield f"the instructions name {sign}, which is no key of the task; write {{lower}} and {{raise}} instead."
+
+
+def _untrue_perspective(study: Study) -> Iterator[str]:
+    given = study.stimulus.camera.field_of_view
+    if study.display is not None and given is not None and abs(given - study.display.angle) > 1.0:
+        yield (
+            f"the camera sees {given:g} degrees but the screen fills {study.display.angle:.1f} for the viewer, so the "
+            "perspective is not true; leave field_of_view out to make it so."
+        )
 
 
 def _small_pages(study: Study) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from PIL import Image
 
 from experiment_app.errors import RunError, UsageError
 from experiment_app.scene import Scene, Walker
-from experiment_app.staging import camera_of
+from experiment_app.staging import staged
 from protocols.design import Trial
 from protocols.plan import value_of
 from protocols.study import Study
@@ -68,7 +69,8 @@ def walking(study: Study, trial: Trial, seconds: float, lod: int | None = None) 
         phase=seconds * step_frequency / 120.0 % 1.0,
         distance=speed * seconds,
     )
-    return Scene((walker,), camera_of(study), stimulus.ground, lod=lod)
+    scene = staged(study, (walker,))
+    return scene if lod is None else replace(scene, lod=lod)
 
 
 def film_scenes(scenes: Iterator[Scene], size: tuple[int, int], samples: int = 4) -> Iterator[Pixels]:

@@ -7,8 +7,11 @@ from typing import Literal
 
 from stimuli.methods.recipe import Making
 
-View = Literal["three_quarter", "side", "front", "legs"]
-Ground = Literal["open_ground", "treadmill", "plain"]
+View = Literal["three_quarter", "side", "front", "legs", "elevated", "first_person"]
+Ground = Literal["open_ground", "treadmill", "plain", "street"]
+
+STREET_HALF_WIDTH = 9.0
+"""m from the middle of the street, x = 0, to either kerb; it runs along z without end."""
 
 
 @dataclass(frozen=True)
@@ -38,16 +41,26 @@ class Walker:
 class Camera:
     """Where the scene is seen from.
 
-    view:          a named view; all follow the walker, legs narrows the field of view to the legs.
-    distance:      m from the camera to the walker.
+    view:          a named view. Most follow the first walker, legs narrows the field of view to the legs; elevated
+                   looks down at a place and first_person stands at one, whoever walks there.
+    distance:      m along the ground from the camera to the walker or the place.
     height:        m above the ground.
     field_of_view: vertical, degrees.
+    heading:       degrees in which the camera looks, 0 along +Z, 90 along +X; None: the view's own.
+    place:         (x, z) m, what elevated looks at or where first_person stands.
     """
 
     view: View = "three_quarter"
     distance: float = 5.0
     height: float = 1.6
     field_of_view: float = 30.0
+    heading: float | None = None
+    place: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def follows(self) -> bool:
+        """Whether the camera keeps pace with the first walker."""
+        return self.view not in ("elevated", "first_person")
 
 
 @dataclass(frozen=True)
@@ -135,6 +148,11 @@ class Scene:
     screen_angle: float = 0.0
     lod: int | None = None
     beside: Scene | None = None
+
+    @property
+    def visible(self) -> bool:
+        """Whether there is more to see than a page: somebody, or a place the camera stands at."""
+        return bool(self.walkers) or not self.camera.follows or (self.beside is not None and self.beside.visible)
 
     @property
     def everyone(self) -> tuple[Walker, ...]:

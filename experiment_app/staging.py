@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from experiment_app.scene import Box, Camera, Line, Page, Row, Scene, Walker
+from experiment_app.scene import Box, Camera, Line, Marks, Page, Row, Scene, Walker
 from protocols.adjustment import AdjustmentTrial
 from protocols.form import Choice, Form
 from protocols.plan import QuestionsStep, TextStep, TrialStep, value_of
 from protocols.session import Interval, Overlay, Session
 from protocols.study import Study
+from protocols.viewing import field_of_view
 
 
 def stage(session: Session) -> Scene:
@@ -24,10 +25,25 @@ def stage(session: Session) -> Scene:
     return Scene(page=_page(session, session.stage))
 
 
-def camera_of(study: Study) -> Camera:
-    """The study's camera."""
-    view = study.stimulus.camera
-    return Camera(view.view, view.distance, view.height, view.field_of_view)
+def staged(study: Study, walkers: tuple[Walker, ...]) -> Scene:
+    """The walkers as the study wants them seen: its ground, camera, marks, level of detail and viewer's angle."""
+    look = study.stimulus
+    camera = Camera(
+        view=look.camera.view,
+        distance=look.camera.distance,
+        height=look.camera.height,
+        field_of_view=field_of_view(look.camera, study.display),
+        heading=look.camera.heading,
+        place=(look.camera.place[0], look.camera.place[1]) if look.camera.place else (0.0, 0.0),
+    )
+    return Scene(
+        walkers,
+        camera,
+        look.ground,
+        marks=Marks(**look.marks.model_dump()),
+        screen_angle=study.display.angle if study.display is not None else 0.0,
+        lod=look.level_of_detail,
+    )
 
 
 def _trial_scene(session: Session) -> Scene:
@@ -43,7 +59,7 @@ def _trial_scene(session: Session) -> Scene:
         phase=trial.phase,
         distance=trial.distance,
     )
-    return Scene((walker,), camera_of(study), study.stimulus.ground, caption=study.words.trial_caption)
+    return replace(staged(study, (walker,)), caption=study.words.trial_caption)
 
 
 def paragraphs(text: str) -> tuple[Line, ...]:

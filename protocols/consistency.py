@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from protocols.planned_analysis import analysis_mistakes, no_such
 from protocols.study import ChoiceQuestion, Study
 from protocols.study_file import Mistake, Place
+from protocols.viewing import viewing_mistakes
 
 TAKEN_COLUMNS = frozenset({"study", "participant", "run", "trial", "block", "repetition"})
 """Columns that every table of trials has."""
@@ -29,6 +30,7 @@ def inconsistencies(study: Study) -> list[Mistake]:
         *_between(study),
         *analysis_mistakes(study),
         *_questions(study),
+        *(Mistake(place, message) for place, message in viewing_mistakes(study.stimulus, study.display)),
     ]
 
 

@@ -10,6 +10,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
+from protocols.viewing import Appearance, Display
+
 
 def _level(value: Any) -> Any:
     """Refuses what YAML reads as a truth value or as no number: neither names a level."""
@@ -104,25 +106,12 @@ class Practice(Part):
         return dict(self.model_extra or {})
 
 
-class CameraView(Part):
-    """Where the walker is seen from."""
-
-    view: Literal["three_quarter", "side", "front", "legs"] = Field(
-        "three_quarter", description="All follow the walker; legs shows the legs only."
-    )
-    distance: float = Field(5.0, strict=True, ge=1.0, le=50.0, description="m from camera to walker.")
-    height: float = Field(1.6, strict=True, ge=0.1, le=10.0, description="m above the ground.")
-    field_of_view: float = Field(30.0, strict=True, ge=5.0, le=100.0, description="Vertical, degrees.")
-
-
-class Stimulus(Part):
+class Stimulus(Appearance):
     """What walks: each value is a constant or `$factor`, the level of that factor in the trial."""
 
     actor: Text = Field(description="An actor's name, or $factor.")
     speed: Reference | Speed = Field(description="Walking speed, m/s, or $factor.")
     body: Text | None = Field(None, description="A body's name or $factor; the actor's own when left out.")
-    ground: Literal["open_ground", "treadmill", "plain"] = "open_ground"
-    camera: CameraView = CameraView()
 
 
 class AdjustmentKeys(Part):
@@ -402,6 +391,7 @@ class Study(Part):
     practice: list[Practice] = Field(default_factory=list, description="Training trials, in this order.")
     breaks: Breaks | None = None
     resume: Resume = Resume()
+    display: Display | None = Field(None, description="Screen and viewing distance, for true angles and perspective.")
     stimulus: Stimulus
     task: Adjustment
     interval: float = Field(0.5, strict=True, ge=0.1, le=10.0, description="s of empty screen between trials.")

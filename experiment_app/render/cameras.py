@@ -15,12 +15,16 @@ from stimuli.skeleton import Floats
 NEAR = 0.1  # m
 FAR = 4000.0  # m, beyond where the haze has swallowed the ground
 
-AZIMUTHS: dict[View, float] = {"three_quarter": -40.0, "front": 0.0, "side": -90.0, "legs": -90.0}
-"""Degrees from the walking direction (+Z) towards the walker's left (+X), seen from the walker.
+HEADINGS: dict[View, float] = {
+    "three_quarter": 140.0, "front": 180.0, "side": 90.0, "legs": 90.0, "elevated": 150.0, "first_person": 180.0,
+}  # fmt: skip
+"""Degrees in which each view looks: 0 along the walking direction (+Z), 90 to the walkers' left (+X).
 
 The camera stands on the walker's right, so that the walker goes from left to right on the screen.
 Three-quarter is the canonical view of objects (Palmer, Rosch and Chase 1981; Blanz, Tarr and Bülthoff 1999).
 """
+
+AIM = 0.9  # m above the ground at the place an elevated camera looks at: the middle of a person there
 
 NARROWEST = 0.8
 """Width over height that still shows a walker with the arms' swing in every named view."""
@@ -58,24 +62,43 @@ class Viewpoint:
 
 
 def place_camera(camera: Camera, aspect: float, stature: float, walker: tuple[float, float, float]) -> Viewpoint:
-    """Put the camera so that the walker is centred vertically.
+    """Put the camera so that the walker is centred vertically, or at the place the scene gives it.
 
     camera:  the scene's camera.
     aspect:  width over height of the picture.
     stature: m, of the walker looked at.
-    walker:  (x, y, z) m, where the walker is now. Every view keeps pace with the walker, which on a treadmill
-             means that it stands still.
+    walker:  (x, y, z) m, where the walker is now. Views that follow keep pace with the walker, which on a
+             treadmill means that they stand still; the others do not look at it.
 
     The pitch is the mean of the elevation of crown and soles, so both have the same margin whatever the
     distance, height or aspect ratio. In pictures narrower than NARROWEST (upright displays, halves of old screens)
     the field of view is widened so that the horizontal one is what it would be there; otherwise it is exactly
     what the scene asks for. Only the legs view is narrower where that would show more than legs: it ends LEGS_TOP
-    above and LEGS_MARGIN below.
+    above and LEGS_MARGIN below. An elevated camera has its place in the middle of the picture, AIM above the
+    ground; first person looks straight ahead.
     """
-    azimuth = math.radians(AZIMUTHS[camera.view])
+    heading = HEADINGS[camera.view] if camera.heading is None else camera.heading
+    azimuth = math.radians(heading - 180.0)
     outwards = np.array([math.sin(azimuth), 0.0, math.cos(azimuth)])
-    eye = np.array([walker[0], walker[1] + camera.height, walker[2]]) + camera.distance * outwards
     half_angle = math.radians(0.5 * camera.field_of_view)
+    if camera.follows:
+        base, distance = np.array(walker), camera.distance
+        pitch, half_angle = _framed(camera, stature, half_angle)
+    else:
+        base = np.array([camera.place[0], 0.0, camera.place[1]])
+        distance = camera.distance if camera.view == "elevated" else 0.0
+        pitch = math.atan2(AIM - camera.height, distance) if camera.view == "elevated" else 0.0
+    eye = base + np.array([0.0, camera.height, 0.0]) + distance * outwards
+    forward = np.array([0.0, math.sin(pitch), 0.0]) - math.cos(pitch) * outwards
+    widened = max(1.0, NARROWEST / aspect) if camera.follows else 1.0
+    half_height = math.tan(half_angle) * widened
+    turn = look(eye, forward)
+    matrix = perspective(half_height, aspect) @ turn
+    return Viewpoint(eye, azimuth, half_height, matrix, _from_clip(half_height, aspect, turn, eye))
+
+
+def _framed(camera: Camera, stature: float, half_angle: float) -> tuple[float, float]:
+    """Pitch and half the vertical field of view (radians) that hold the walker, or the legs, in the middle."""
     top, bottom = stature, 0.0
     if camera.view == "legs":
         top, bottom = stature * LEGS_TOP, -stature * LEGS_MARGIN
@@ -83,12 +106,7 @@ def place_camera(camera: Camera, aspect: float, stature: float, walker: tuple[fl
     below = math.atan2(bottom - camera.height, camera.distance)
     if camera.view == "legs":
         half_angle = min(half_angle, 0.5 * (above - below))
-    pitch = 0.5 * (above + below)
-    forward = np.array([0.0, math.sin(pitch), 0.0]) - math.cos(pitch) * outwards
-    half_height = math.tan(half_angle) * max(1.0, NARROWEST / aspect)
-    turn = look(eye, forward)
-    matrix = perspective(half_height, aspect) @ turn
-    return Viewpoint(eye, azimuth, half_height, matrix, _from_clip(half_height, aspect, turn, eye))
+    return 0.5 * (above + below), half_angle
 
 
 def look(eye: Floats, forward: Floats) -> Floats:

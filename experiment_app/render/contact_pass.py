@@ -32,6 +32,8 @@ class ContactPass:
         self, walkers: Sequence[DrawnWalker], viewpoint: Viewpoint, area: tuple[float, float, float, float]
     ) -> None:
         """Multiplies into the bound framebuffer; area: centre x, z and half sizes x, z (m) of the ground."""
+        if not walkers:
+            return
         if len(walkers) > len(self._rows):
             self._make_room(1 << (len(walkers) - 1).bit_length())
         fill_occluders(self._rows, walkers)

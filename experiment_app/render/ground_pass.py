@@ -15,12 +15,15 @@ OUTDOORS = {**CONSTANTS, "OPEN_GROUND": "1"}
 class GroundPass:
     """A floor as far as the eye reaches and what stands behind it.
 
-    floor: the fragment shader of the floor, "open_ground.frag" or "studio_floor.frag".
+    floor:       the fragment shader of the floor, "open_ground.frag" or "studio_floor.frag".
+    half_street: m from the middle to the gutters of a street along z, None for open ground.
     """
 
-    def __init__(self, context: moderngl.Context, floor: str) -> None:
+    def __init__(self, context: moderngl.Context, floor: str, half_street: float | None = None) -> None:
         self._context = context
         constants = OUTDOORS if floor == "open_ground.frag" else CONSTANTS
+        if half_street is not None:
+            constants = {**constants, "HALF_STREET": f"{half_street:.3f}"}
         self._floor = build(context, "ground.vert", floor, constants)
         self._sky = build(context, "full_screen.vert", "sky.frag", constants)
         self._square = context.vertex_array(self._floor, [])

@@ -44,6 +44,7 @@ class Lights:
 
 LIGHTS: dict[Ground, Lights] = {
     "open_ground": Lights(sun=(1.12, 1.05, 0.95), sky=(0.42, 0.46, 0.52), bounce=(0.25, 0.235, 0.21)),
+    "street": Lights(sun=(1.12, 1.05, 0.95), sky=(0.42, 0.46, 0.52), bounce=(0.25, 0.235, 0.21)),
     "plain": Lights(sun=(0.92, 0.90, 0.86), sky=(0.58, 0.59, 0.60), bounce=(0.30, 0.295, 0.29)),
     "treadmill": Lights(sun=(0.92, 0.90, 0.86), sky=(0.58, 0.59, 0.60), bounce=(0.30, 0.295, 0.29)),
 }
@@ -90,7 +91,7 @@ def direction_to_sun(view_azimuth: float) -> Floats:
 def fit_sunlight(ground: Ground, view_azimuth: float, walkers: Sequence[DrawnWalker], corners: Floats) -> Sunlight:
     """The sun, with the smallest upright box in its light that holds every walker and every corner point.
 
-    corners: (N, 3) m, other things that cast shadows, N may be 0.
+    corners: (N, 3) m, other things that cast shadows; N may be 0 when there is a walker.
     """
     to_sun = direction_to_sun(view_azimuth)
     turn = look(np.zeros(3), -to_sun)
@@ -99,6 +100,8 @@ def fit_sunlight(ground: Ground, view_azimuth: float, walkers: Sequence[DrawnWal
         stature = walkers[0].body.stature
         middle = turn[:3, :3] @ (x, y + 0.5 * stature, z)
         low, high = middle - REACH * stature, middle + REACH * stature
+    elif not walkers:
+        low, high = np.full(3, np.inf), np.full(3, -np.inf)
     else:
         middles = np.array([(w.place[0], w.place[1] + 0.5 * w.body.stature, w.place[2]) for w in walkers])
         reach = REACH * np.array([[walker.body.stature] for walker in walkers])

@@ -60,7 +60,7 @@ class PagePainter:
         """Draws the scene's page or caption, over what is there only if the scene or its page says so."""
         width, height = self._size
         page = scene.page
-        plain = not page.over_scene if page is not None else not scene.everyone
+        plain = not page.over_scene if page is not None else not scene.visible
         if plain and page in (None, Page()):
             self._context.clear(*PAGE)
         if page is not None and page != Page():

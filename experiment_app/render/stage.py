@@ -15,17 +15,19 @@ from experiment_app.render.light import fit_sunlight
 from experiment_app.render.marks_pass import MarksPass
 from experiment_app.render.part_map import PartMapTarget
 from experiment_app.render.shadow_map import ShadowMap
+from experiment_app.render.street_pass import StreetPass
 from experiment_app.render.treadmill_model import FLOOR
 from experiment_app.render.treadmill_pass import TreadmillPass, corners, footprint, walked_surface
 from experiment_app.render.viewports import Viewport
 from experiment_app.render.walkers_pass import WalkersPass
-from experiment_app.scene import Scene
+from experiment_app.scene import STREET_HALF_WIDTH, Scene
 
 NOTHING = np.zeros((0, 3))
+ROADWAY = (0.0, 0.0, STREET_HALF_WIDTH, 1e9)
 
 
 class Stage:
-    """Draws walkers on open ground or on a treadmill. Neither ground is built before it is first seen."""
+    """Draws walkers on their ground. No ground is built before it is first seen."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
@@ -34,6 +36,7 @@ class Stage:
         self._contact = ContactPass(context)
         self._marks: MarksPass | None = None
         self._outdoors: GroundPass | None = None
+        self._street_passes: tuple[GroundPass, StreetPass] | None = None
         self._indoors: tuple[GroundPass, TreadmillPass] | None = None
 
     @property
@@ -50,15 +53,16 @@ class Stage:
         """Draws into the bound framebuffer of a size (pixels), in linear light, seen from the first walker's camera."""
         picture = self._context.fbo
         width, height = size
-        first = drawn[0]
-        viewpoint = place_camera(scene.camera, width / height, first.body.stature, first.place)
-        if scene.ground == "plain" or all(walker.lines is not None for walker in drawn):
+        viewpoint = seen_from(scene, drawn, width / height)
+        if scene.ground == "plain" or (drawn and all(walker.lines is not None for walker in drawn)):
             self._draw_plain(scene, drawn, viewpoint, size)
             return
         on_treadmill = scene.ground == "treadmill"
         machine = _middle(scene)
         casters = corners(machine) if on_treadmill else NOTHING
         bodies = [walker for walker in drawn if walker.lines is None]
+        if not bodies and not on_treadmill:  # the shadow map lies where it harms nobody: under the eye
+            casters = (viewpoint.eye * (1.0, 0.0, 1.0))[None]
         sunlight = fit_sunlight(scene.ground, viewpoint.azimuth, bodies, casters)
         self._walkers.place(drawn, viewpoint, height, scene.lod)
 
@@ -72,9 +76,13 @@ class Stage:
         self._walkers.draw(viewpoint, sunlight)
         if on_treadmill:
             ground, treadmill = self._treadmill()
-            treadmill.draw(viewpoint, sunlight, machine, scene.walkers[0].distance)
+            treadmill.draw(viewpoint, sunlight, machine, scene.walkers[0].distance if scene.walkers else 0.0)
             ground.draw_floor(viewpoint, sunlight, FLOOR, footprint(machine))
             area = walked_surface(machine)
+        elif scene.ground == "street":
+            (ground, street), area = self._street(), ROADWAY
+            street.draw(viewpoint, sunlight)
+            ground.draw_floor(viewpoint, sunlight)
         else:
             ground, area = self._open_ground(), EVERYWHERE
             ground.draw_floor(viewpoint, sunlight)
@@ -88,8 +96,7 @@ class Stage:
         target.begin()
         for view in viewports:
             width, height = view.area[2:]
-            first = view.drawn[0]
-            viewpoint = place_camera(view.scene.camera, width / height, first.body.stature, first.place)
+            viewpoint = seen_from(view.scene, view.drawn, width / height)
             if len(viewports) > 1:  # the passes hold the walkers of the last view only
                 self._walkers.place(view.drawn, viewpoint, height, view.scene.lod)
             target.look_at(view.area)
@@ -126,7 +133,8 @@ class Stage:
 
     def release(self) -> None:
         """Frees the GPU's memory."""
-        for part in (self._shadows, self._walkers, self._contact, self._marks, self._outdoors, *(self._indoors or ())):
+        several = (*(self._indoors or ()), *(self._street_passes or ()))
+        for part in (self._shadows, self._walkers, self._contact, self._marks, self._outdoors, *several):
             if part is not None:
                 part.release()
 
@@ -135,13 +143,26 @@ class Stage:
             self._outdoors = GroundPass(self._context, "open_ground.frag")
         return self._outdoors
 
+    def _street(self) -> tuple[GroundPass, StreetPass]:
+        if self._street_passes is None:
+            ground = GroundPass(self._context, "open_ground.frag", STREET_HALF_WIDTH)
+            self._street_passes = ground, StreetPass(self._context)
+        return self._street_passes
+
     def _treadmill(self) -> tuple[GroundPass, TreadmillPass]:
         if self._indoors is None:
             self._indoors = GroundPass(self._context, "studio_floor.frag"), TreadmillPass(self._context)
         return self._indoors
 
 
+def seen_from(scene: Scene, drawn: Sequence[DrawnWalker], aspect: float) -> Viewpoint:
+    """The scene's camera in the world; a view that follows looks at the first walker."""
+    if not drawn:
+        return place_camera(scene.camera, aspect, 1.75, (0.0, 0.0, 0.0))
+    return place_camera(scene.camera, aspect, drawn[0].body.stature, drawn[0].place)
+
+
 def _middle(scene: Scene) -> tuple[float, float, float]:
     """(x, y, z) m where the first walker was placed: the middle of the belt."""
-    x, z = scene.walkers[0].place
+    x, z = scene.walkers[0].place if scene.walkers else (0.0, 0.0)
     return x, 0.0, z

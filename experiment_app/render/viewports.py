@@ -36,7 +36,8 @@ def viewports_of(scene: Scene, drawn: Sequence[DrawnWalker], size: tuple[int, in
     left, right, _ = divide(size)
     beside = replace(scene.beside, screen_angle=scene.screen_angle)
     first = len(scene.walkers)
-    return Viewport(scene, drawn[:first], left), Viewport(beside, drawn[first:], right)
+    alone = replace(scene, beside=None)
+    return Viewport(alone, drawn[:first], left), Viewport(beside, drawn[first:], right)
 
 
 def divide(size: tuple[int, int]) -> tuple[Area, Area, Area]:

@@ -53,6 +53,15 @@ void main() {
     float speckle = filtered_noise(at * 160.0 + 7.0, reach * 160.0);
     vec3 stone = vec3(0.352, 0.340, 0.318) * (1.0 + 0.085 * tone + 0.045 * grain + 0.05 * speckle);
     stone = mix(stone, vec3(0.185, 0.175, 0.160), joint * 0.85);
+#ifdef HALF_STREET
+    // Gutters along the kerbs: a strip of darker stone, dirtier towards the edge.
+    stone *= vec3(0.80, 0.81, 0.83);
+    float inside = HALF_STREET - abs(at.x);
+    float gutter = 1.0 - clamp((inside - 0.35) / max(footprint.x, 0.01) + 0.5, 0.0, 1.0);
+    float setts = filtered_lines(at.y * 2.5, 0.03, footprint.y * 2.5);
+    vec3 strip = mix(vec3(0.205, 0.200, 0.192) * (1.0 + 0.04 * grain), vec3(0.16), 0.6 * setts);
+    stone = mix(stone, strip * (0.82 + 0.18 * smoothstep(0.0, 0.2, inside)), gutter);
+#endif
 
     vec3 up = vec3(0.0, 1.0, 0.0);
     vec3 light = sky_colour + sun_colour * to_sun.y * sunlight(world_position, up, true);

@@ -1,0 +1,171 @@
+"""Cameras that stand still, the street, and the study file's camera, marks and display in what is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import moderngl
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from experiment_app.film import condition_of, walking
+from experiment_app.render.cameras import AIM, HEADINGS, place_camera
+from experiment_app.render.renderer import Renderer
+from experiment_app.render.street_model import HOUSES_AT, KERB_HEIGHT, STRETCH, street_side
+from experiment_app.scene import STREET_HALF_WIDTH, Camera, Ground, Scene, View, Walker
+from experiment_app.staging import staged
+from experiment_app.walkers import drawn_walkers
+from protocols.study_file import parse_study
+from tests.protocols.studies import changed
+
+SIZE = (320, 180)
+WALKER = Walker("F1", 1.2, 105.0, 0.3, distance=4.7)
+NOWHERE = (0.0, 0.0, 0.0)
+
+
+@pytest.fixture(scope="module")
+def context() -> Iterator[moderngl.Context]:
+    try:
+        made = moderngl.create_context(standalone=True, backend="egl", require=330)
+    except Exception as error:  # glcontext raises bare Exceptions
+        pytest.skip(f"no OpenGL 3.3 through EGL on this machine: {error}")
+    yield made
+    made.release()
+
+
+@pytest.fixture(scope="module")
+def renderer(context: moderngl.Context) -> Iterator[Renderer]:
+    made = Renderer(context, SIZE, 1.0, 4)
+    yield made
+    made.release()
+
+
+def picture(context: moderngl.Context, renderer: Renderer, scene: Scene) -> NDArray[np.uint8]:
+    target = context.simple_framebuffer(SIZE)
+    renderer.draw(scene, drawn_walkers(scene), target)
+    pixels = renderer.read_pixels(target)
+    target.release()
+    return pixels
+
+
+def seen(camera: Camera, point: tuple[float, float, float], walker: tuple[float, float, float] = NOWHERE) -> np.ndarray:
+    """Where a point is on a picture twice as wide as high, from -1 to 1, and its distance ahead (m)."""
+    clip = place_camera(camera, 2.0, 1.75, walker).matrix @ np.array([*point, 1.0])
+    return np.array([clip[0] / clip[3], clip[1] / clip[3], clip[3]])
+
+
+def test_an_elevated_camera_has_its_place_in_the_middle_wherever_people_are() -> None:
+    camera = Camera("elevated", 20.0, 12.0, 35.0, place=(3.0, -7.0))
+    for walker in (NOWHERE, (4.0, 0.0, 30.0)):
+        x, y, ahead = seen(camera, (3.0, AIM, -7.0), walker)
+        assert (x, y) == pytest.approx((0.0, 0.0), abs=1e-9)
+        assert ahead == pytest.approx(np.hypot(20.0, 12.0 - AIM))
+
+
+def test_first_person_stands_at_its_place_and_has_the_horizon_in_the_middle() -> None:
+    camera = Camera("first_person", height=1.62, place=(1.0, 6.0))
+    viewpoint = place_camera(camera, 2.0, 1.75, (9.0, 0.0, 9.0))
+    assert viewpoint.eye == pytest.approx([1.0, 1.62, 6.0])
+    x, y, ahead = seen(camera, (1.0, 1.62, -4.0))
+    assert (x, y, ahead) == pytest.approx((0.0, 0.0, 10.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("view", HEADINGS)
+def test_a_heading_of_zero_looks_along_the_walkers_way(view: View) -> None:
+    """What is further along the way is further away, in the middle; what is to the walkers' left, on the left."""
+    camera = Camera(view, 6.0, 1.6, 40.0, heading=0.0)
+    middle, ahead, left = (seen(camera, point) for point in ((0.0, 1.0, 5.0), (0.0, 1.0, 9.0), (1.0, 1.0, 9.0)))
+    assert ahead[0] == pytest.approx(0.0, abs=1e-9)
+    assert ahead[2] > middle[2]
+    assert left[0] < 0.0
+
+
+def test_a_metre_at_the_viewers_distance_has_a_metres_angle_in_true_perspective() -> None:
+    """A screen 0.3 m high at 0.6 m: a person of 1.75 m, 3.5 m away, covers as much of it as of a window there."""
+    study = parse_study(
+        "s.yaml",
+        changed(
+            ("field_of_view: 24}", "}"),
+            ("height: 1.5, }", "height: 1.5}"),
+            ("interval: 0.7", "display: {viewing_distance: 0.6, screen_height: 0.3}\ninterval: 0.7"),
+        ),
+    ).study
+    scene = staged(study, (WALKER,))
+    assert scene.screen_angle == pytest.approx(28.07, abs=0.01)
+    camera = replace(scene.camera, view="first_person", height=0.0, place=(0.0, 0.0))
+    top, bottom = (seen(camera, (0.0, y, -3.5))[1] for y in (0.875, -0.875))
+    assert 0.5 * (top - bottom) * 0.3 == pytest.approx(1.75 * 0.6 / 3.5)
+
+
+def test_the_study_files_look_reaches_the_scene() -> None:
+    text = changed(
+        ("ground: open_ground", "ground: plain\n  body: point_light\n  level_of_detail: 0\n  marks: "
+         "{dot_size: 0.3, line_width: 0.2, brightness: 0.5, background: 0.1, seed: 7}"),
+        ("camera: {view: three_quarter, distance: 5.5, height: 1.5, field_of_view: 24}",
+         "camera: {view: elevated, distance: 12.0, height: 6.0, heading: 170.0, place: [1.0, 2.0]}"),
+    )  # fmt: skip
+    study = parse_study("s.yaml", text).study
+    scene = walking(study, condition_of(study, ["actor=M1"]), 1.0)
+    assert scene.camera == Camera("elevated", 12.0, 6.0, 30.0, 170.0, (1.0, 2.0))
+    assert scene.ground == "plain"
+    assert scene.lod == 0
+    assert (scene.marks.dot_size, scene.marks.brightness, scene.marks.background, scene.marks.seed) == (
+        0.3,
+        0.5,
+        0.1,
+        7,
+    )
+    assert walking(study, condition_of(study, []), 1.0, lod=2).lod == 2
+
+
+def test_the_street_is_there_when_nobody_is(context: moderngl.Context, renderer: Renderer) -> None:
+    empty = Scene((), Camera("first_person", height=1.6, field_of_view=50.0), "street")
+    alone = picture(context, renderer, empty)
+    assert alone.std() > 15.0
+    assert np.array_equal(alone, picture(context, renderer, empty))
+    parts = renderer.draw_parts()
+    assert parts is not None
+    assert not parts.codes.any()
+    with_walker = picture(context, renderer, replace(empty, walkers=(replace(WALKER, place=(0.0, -12.0)),)))
+    changed_pixels = np.abs(alone.astype(int) - with_walker).max(axis=2) > 8
+    assert 100 < changed_pixels.sum() < 0.1 * changed_pixels.size
+
+
+def test_the_walker_looks_the_same_on_the_street_as_on_open_ground(
+    context: moderngl.Context, renderer: Renderer
+) -> None:
+    """The houses cast no shadow, so every walker of a crowd has the same light."""
+    grounds: tuple[Ground, Ground] = ("open_ground", "street")
+    on = [picture(context, renderer, Scene((WALKER,), ground=ground)).astype(int) for ground in grounds]
+    parts = renderer.draw_parts()
+    assert parts is not None
+    inside = parts.codes[..., 0] > 0
+    inside &= np.roll(inside, 1, 0) & np.roll(inside, -1, 0) & np.roll(inside, 1, 1) & np.roll(inside, -1, 1)
+    assert inside.sum() > 500
+    assert np.abs(on[0] - on[1])[inside].max() == 0
+
+
+def test_the_street_passes_by(context: moderngl.Context, renderer: Renderer) -> None:
+    """Paving and houses move past a walker that the camera follows."""
+    here = picture(context, renderer, Scene((WALKER,), Camera("side"), "street")).astype(int)
+    there = picture(context, renderer, Scene((replace(WALKER, distance=6.1),), Camera("side"), "street")).astype(int)
+    different = np.abs(here - there).max(axis=2) > 4
+    assert different[:80, :110].mean() > 0.04  # houses
+    assert different[130:, :110].mean() > 0.08  # paving
+
+
+def test_the_street_is_closed_along_its_length_and_clear_of_the_roadway() -> None:
+    side = street_side()
+    position, normal = side["position"], side["normal"]
+    assert position[:, 0].min() == STREET_HALF_WIDTH
+    assert np.all(position[position[:, 0] < HOUSES_AT - 0.01][:, 1] <= KERB_HEIGHT + 1e-6)
+    fronts = position[(side["paint"][:, 3] == 2.0)].reshape(-1, 6, 3)
+    starts, ends = np.sort(fronts[..., 2].min(axis=1)), np.sort(fronts[..., 2].max(axis=1))
+    assert starts[0] == 0.0
+    assert ends[-1] == STRETCH
+    assert starts[1:] == pytest.approx(ends[:-1], abs=1e-4)
+    triangles = position.reshape(-1, 3, 3)
+    facing = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    assert np.all(np.sum(facing * normal.reshape(-1, 3, 3)[:, 0], axis=1) > 0.0)
