@@ -53,7 +53,7 @@ def place(text: str, sought: str) -> str:
         ("confirm: enter", "confirm: escape", "escape", "escape is kept for the pause page"),
         ("actor: [F1, F2, M1, M2] ", "actor: [F1, F1, M1, M2] ", "F1, M1, M2]", "level F1 stands twice"),
         ("{actor: T1, speed: 1.0, start: 120}", "{actor: T1, start: 120}", "{actor: T1, start", "speed is missing"),
-        ("view: three_quarter", "view: sideways", "sideways", "allowed: three_quarter, side, front or legs"),
+        ("view: three_quarter", "view: sideways", "sideways", "side, front, legs, elevated or first_person"),
         ("exclusions: [] ", "exclusions: [{where: lat > 5, reason: x}]", "lat > 5", "lat is no column"),
         ("planned: 22", "planned: 22.5", "22.5", "22.5"),
         ("speed: $speed", "speed: $sped", "$sped", "did you mean $speed?"),
