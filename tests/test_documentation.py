@@ -61,15 +61,19 @@ def test_the_yaml_of_the_study_file_page_is_accepted_in_a_study():
     from protocols.study_file import parse_study
     from tests.protocols.studies import shipped_text
 
-    questions, keys, words, analysis = blocks(ROOT / "docs" / "study-file.md", "yaml")
+    page = {block.split(":")[0]: block for block in blocks(ROOT / "docs" / "study-file.md", "yaml")}
+    questions, keys, words, analysis = page["questions"], page["keys"], page["language"], page["analysis"]
     text = shipped_text()
     start, end = text.index("analysis:\n"), text.index("# Simulated observers")
     text = text[:start] + analysis + "\n" + text[end:]
     start, end = text.index("  questions:"), text.index("# Design")
     text = text[:start] + "".join(f"  {line}\n" for line in questions.splitlines()) + "\n" + text[end:]
     text = re.sub(r"  keys: .*", f"  {keys.strip()}", text)
-    file = parse_study("page.yaml", text.replace("language: en\n", words))
-    assert inconsistencies(file.study) == []
+    text = text.replace("language: en\n", words).replace("stimulus:\n", f"{page['display']}stimulus:\n")
+    text = text.replace("  ground: open_ground", f"  ground: street\n  {page['marks'].strip()}")
+    for camera in page["camera"].splitlines():
+        file = parse_study("page.yaml", re.sub(r"  camera: .*", f"  {camera}", text))
+        assert inconsistencies(file.study) == []
     texts = {name for name, field in type(file.study.words).model_fields.items() if field.default}
     assert texts <= file.study.words.model_fields_set, "the French example names every word"
 
