@@ -118,8 +118,8 @@ def summary(file: StudyFile) -> list[str]:
     lines = [
         f"{file.name}: {study.title}",
         f"  no mistakes; SHA-256 {file.hash[:16]}",
-        f"  {levels} levels = {cells} conditions, {_times(study.repetitions)} each = {trials} trials in {study.order} "
-        f"order, after {len(study.practice)} training trials",
+        f"  {levels} levels = {cells} conditions, {_times(study.repetitions)} each = {trials} trials "
+        f"in {study.order.kind} order, after {len(study.practice)} training trials",
         f"  about {math.ceil(expected_minutes(study))} minutes; {study.participants.planned} participants planned",
         "",
         "Balance (one dot = one trial of participant 1, left to right in the order shown)",

@@ -205,6 +205,7 @@ def progress(run: Run) -> Progress:
     left: set[str] = set()
     begun: dict[str, int] = {}
     consented = False
+    answers: list[tuple[int, dict[str, Any]]] = []
     for line in run.lines:
         kind = line["kind"]
         if kind == "page":
@@ -217,7 +218,10 @@ def progress(run: Run) -> Progress:
                 begun[step] = begun.get(step, 0) + 1
             else:
                 left.add(step)
-    return Progress(frozenset(left), begun, consented, bool(run.end))
+                if not line["practice"]:
+                    columns = {**line["factors"], **line["response"], "response_time": line["response_time"]}
+                    answers.append((line["number"], columns))
+    return Progress(frozenset(left), begun, consented, bool(run.end), tuple(answers))
 
 
 def lock(file: IO[bytes], path: Path) -> None:

@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from protocols.order import AdaptiveOrder
+from protocols.order_mistakes import order_mistakes
 from protocols.planned_analysis import analysis_mistakes, no_such
 from protocols.study import ChoiceQuestion, Study
 from protocols.study_file import Mistake, Place
@@ -15,6 +17,8 @@ from protocols.viewing import viewing_mistakes
 
 TAKEN_COLUMNS = frozenset({"study", "participant", "run", "trial", "block", "repetition"})
 """Columns that every table of trials has."""
+
+OR_ASSIGNED = "; or name it in participants.assigned, and the program assigns it"
 
 MOST_TRIALS = 10_000
 """Trials a run may have; more is a slip of the keyboard."""
@@ -28,6 +32,7 @@ def inconsistencies(study: Study) -> list[Mistake]:
         *_practice(study),
         *_range(study),
         *_between(study),
+        *order_mistakes(study),
         *analysis_mistakes(study),
         *_questions(study),
         *(Mistake(place, message) for place, message in viewing_mistakes(study.stimulus, study.display)),
@@ -46,7 +51,8 @@ def referred_factors(study: Study) -> dict[str, Place]:
 
 
 def _levels(study: Study) -> Iterator[Mistake]:
-    trials = study.repetitions * math.prod(len(levels) for levels in study.factors.values())
+    placed = study.order.of if isinstance(study.order, AdaptiveOrder) else None
+    trials = study.repetitions * math.prod(len(levels) for name, levels in study.factors.items() if name != placed)
     if trials > MOST_TRIALS:
         yield Mistake(("repetitions",), f"the design has {trials} trials; at most {MOST_TRIALS} fit a run")
     for factor, levels in study.factors.items():
@@ -61,7 +67,7 @@ def _levels(study: Study) -> Iterator[Mistake]:
 
 def _references(study: Study) -> Iterator[Mistake]:
     for factor, place in referred_factors(study).items():
-        if factor not in study.factors:
+        if factor not in study.factors and factor not in study.participants.assigned:
             yield Mistake(place, no_such(f"${factor}", [f"${f}" for f in study.factors], "factor"))
     for place, value in (
         (("stimulus", "speed"), study.stimulus.speed),
@@ -135,8 +141,10 @@ def _between(study: Study) -> Iterator[Mistake]:
     choices = _choices(study)
     for factor, levels in study.participants.between.items():
         where: Place = ("participants", "between", factor)
+        if factor in study.participants.assigned:
+            continue
         if factor not in choices:
-            yield Mistake(where, no_such(factor, choices, "choice question"), on_key=True)
+            yield Mistake(where, no_such(factor, choices, "choice question") + OR_ASSIGNED, on_key=True)
             continue
         for i, level in enumerate(levels):
             if level not in choices[factor].options:

@@ -6,9 +6,10 @@ A plan follows from the study, the participant's number and the seed alone; it k
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
+from protocols.adaptive import Tracks, begin_tracks
 from protocols.adjustment import AdjustmentTask
 from protocols.design import Trial, make_trials, practice_trials
 from protocols.study import Level, Pages, Question, Study, TextPage
@@ -51,17 +52,24 @@ Step = TextStep | QuestionsStep | TrialStep
 
 @dataclass(frozen=True)
 class Plan:
-    """Everything one participant will go through, in order."""
+    """Everything one participant will go through, in order.
+
+    tracks: of an adaptive order, by number, after the answers of the trials that are no longer in the steps.
+    """
 
     study: Study
     steps: tuple[Step, ...]
     task: AdjustmentTask
     total: int
+    tracks: Tracks = field(default_factory=dict)
 
 
-def make_plan(study: Study, seed: int, participant_number: int) -> Plan:
-    """The plan of one run; participant_number (from 1, order of arrival) decides counterbalanced keys."""
-    trials = make_trials(study, seed)
+def make_plan(study: Study, seed: int, participant_number: int, group: Mapping[str, str] | None = None) -> Plan:
+    """The plan of one run; participant_number (from 1) decides counterbalanced keys and the row of a square.
+
+    group: levels of the between-participant factors that the program assigned.
+    """
+    trials = make_trials(study, seed, participant_number, group)
     pages = _with_keys(study, keys_of(study, participant_number))
     steps: list[Step] = [TextStep("consent", pages.consent, "consent")]
     asked = study.participants.questions
@@ -69,7 +77,7 @@ def make_plan(study: Study, seed: int, participant_number: int) -> Plan:
         number = i // QUESTIONS_PER_PAGE + 1
         steps.append(QuestionsStep(f"questions-{number}", tuple(asked[i : i + QUESTIONS_PER_PAGE])))
     steps += [TextStep(f"instructions-{i}", page) for i, page in enumerate(pages.instructions, start=1)]
-    practice = practice_trials(study)
+    practice = practice_trials(study, group)
     if practice and pages.before_practice is not None:
         steps.append(TextStep("before-practice", pages.before_practice))
     steps += [TrialStep(trial) for trial in practice]
@@ -80,12 +88,14 @@ def make_plan(study: Study, seed: int, participant_number: int) -> Plan:
         if study.breaks is not None and trial.number % study.breaks.every == 0 and trial.number < len(trials):
             steps.append(_break_step(study, trial.number, len(trials)))
     steps.append(TextStep("debrief", pages.debrief, "debrief"))
-    return Plan(study, tuple(steps), _task(study, participant_number), len(trials))
+    return Plan(study, tuple(steps), _task(study, participant_number), len(trials), begin_tracks(study))
 
 
 def value_of(setting: str | float, trial: Trial) -> Level:
-    """A stimulus or task setting in one trial: `$factor` becomes that factor's level."""
-    return trial.levels[setting[1:]] if isinstance(setting, str) and setting.startswith("$") else setting
+    """A stimulus or task setting in one trial: `$factor` becomes that factor's level, or the assigned group's."""
+    if isinstance(setting, str) and setting.startswith("$"):
+        return {**trial.group, **trial.levels}[setting[1:]]
+    return setting
 
 
 KEY_LABELS = {"left": "←", "right": "→", "up": "↑", "down": "↓"}

@@ -106,6 +106,7 @@ class TrialRecord:
     response:      step_frequency (steps/min), step_length (m), walk_ratio (m·min).
     measured:      the same and speed (m/s), measured from the walker as drawn at the response; empty if undrawn.
     frames, late_frames: frames shown and those later than 1.5 refresh periods.
+    track:         of an adaptive order, the track whose answers placed the level, from 1; else 0.
     """
 
     kind = "trial"
@@ -126,6 +127,7 @@ class TrialRecord:
     measured: Mapping[str, float] = field(default_factory=dict)
     frames: int = 0
     late_frames: int = 0
+    track: int = 0
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from protocols import adjustment
+from protocols.adaptive import Tracks, after_response, placed
 from protocols.adjustment import AdjustmentTrial
 from protocols.events import Closed, Event, FocusLost, KeyDown, KeyUp, Saved, Shown
 from protocols.form import Choice, Entry, Form, handle_form
@@ -56,6 +57,7 @@ class Session:
     index:   step of the plan that is on; stage: its page, trial or the interval after it.
     shown:   flip time (s) of the stage's first frame, None until it has been seen.
     ended:   why the session is over, "" while it is not.
+    tracks:  of an adaptive order, what the answers so far say about the next levels.
     """
 
     plan: Plan
@@ -66,6 +68,7 @@ class Session:
     pauses: int = 0
     ended: str = ""
     emitted: tuple[Record, ...] = field(default=())
+    tracks: Tracks = field(default_factory=dict)
 
     @property
     def step(self) -> Step:
@@ -85,7 +88,7 @@ class Session:
 
 def begin(plan: Plan) -> Session:
     """The session at its first step."""
-    return _entered(Session(plan, 0, Form()), 0, 0.0)
+    return _entered(Session(plan, 0, Form(), tracks=plan.tracks), 0, 0.0)
 
 
 def drained(session: Session) -> tuple[Session, tuple[Record, ...]]:
@@ -137,12 +140,23 @@ def handle(session: Session, event: Event) -> Session:
 def _entered(session: Session, index: int, time: float) -> Session:
     if index == len(session.plan.steps):  # a plan of trials alone, as for a film, has no last page
         return replace(_emit(session, Ended(time, "finished")), ended="finished")
+    session = _placed(session, index)
     session = replace(session, index=index, shown=None, pauses=0, stage=_stage(session.plan, index))
     step = session.step
     if isinstance(step, TextStep) and step.kind == "debrief":
         # all data are in; whoever closes the window on the last page has finished all the same
         session = _emit(session, Ended(time, "finished"))
     return session
+
+
+def _placed(session: Session, index: int) -> Session:
+    """The session with the level that its track shows next filled into an adaptively placed trial."""
+    steps = session.plan.steps
+    step = steps[index]
+    if not isinstance(step, TrialStep) or not step.trial.track:
+        return session
+    step = replace(step, trial=placed(session.plan.study, session.tracks, step.trial))
+    return replace(session, plan=replace(session.plan, steps=(*steps[:index], step, *steps[index + 1 :])))
 
 
 def _stage(plan: Plan, index: int) -> Form | AdjustmentTrial:
@@ -261,7 +275,14 @@ def _in_trial(session: Session, trial: AdjustmentTrial, event: Event) -> Session
     if not trial.done:
         return session
     record = _trial_record(session, step, trial, event.time)
+    tracks = after_response(session.plan.study, session.tracks, step.trial.track, answer_columns(record))
+    session = replace(session, tracks=tracks)
     return replace(_emit(session, record), stage=Interval(event.time + session.plan.study.interval), shown=None)
+
+
+def answer_columns(record: TrialRecord) -> dict[str, object]:
+    """What a condition on a trial's answer may name: its factors, the values of its response, and response_time."""
+    return {**record.factors, **record.response, "response_time": record.response_time}
 
 
 def _trial_record(session: Session, step: TrialStep, trial: AdjustmentTrial, time: float) -> TrialRecord:
@@ -284,6 +305,7 @@ def _trial_record(session: Session, step: TrialStep, trial: AdjustmentTrial, tim
         reversals=trial.reversals,
         early_confirms=trial.early_confirms,
         pauses=session.pauses,
+        track=step.trial.track,
     )
 
 
@@ -336,12 +358,14 @@ class Progress:
     left:     ids of the pages left and trials finished.
     begun:    how often each trial was begun, by step id.
     consented, finished: whether the participant agreed, and whether the run is over.
+    answers:  (trial number, factors and response) of every finished trial, in order; practice left out.
     """
 
     left: frozenset[str] = frozenset()
     begun: Mapping[str, int] = field(default_factory=dict)
     consented: bool = False
     finished: bool = False
+    answers: tuple[tuple[int, Mapping[str, object]], ...] = ()
 
 
 def remaining(plan: Plan, progress: Progress) -> Plan:
@@ -366,7 +390,16 @@ def remaining(plan: Plan, progress: Progress) -> Plan:
         words = plan.study.words
         text = words.welcome_back_text.replace("{next}", str(following)).replace("{total}", str(plan.total))
         steps.insert(0, TextStep("welcome-back", TextPage(title=words.welcome_back, text=text)))
-    return replace(plan, steps=tuple(steps))
+    return replace(plan, steps=tuple(steps), tracks=_answered(plan, progress))
+
+
+def _answered(plan: Plan, progress: Progress) -> Tracks:
+    """The plan's tracks after the recorded answers, so that the levels go on where they were."""
+    track = {step.trial.number: step.trial.track for step in _trials(list(plan.steps)) if not step.trial.practice}
+    tracks = plan.tracks
+    for number, columns in progress.answers:
+        tracks = after_response(plan.study, tracks, track.get(number, 0), columns)
+    return tracks
 
 
 def _trials(steps: list[Step]) -> list[TrialStep]:

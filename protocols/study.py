@@ -5,42 +5,13 @@ The models are the single source of the JSON Schema (`gaitlab schema`) and of th
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
+from protocols.order import ListOrder, Order
+from protocols.parts import Key, Level, Name, Number, Part, Reference, Speed, StepFrequency, Text
 from protocols.viewing import Appearance, Display
-
-
-def _level(value: Any) -> Any:
-    """Refuses what YAML reads as a truth value or as no number: neither names a level."""
-    if isinstance(value, bool):
-        raise ValueError("yes, no, true and false are no levels; write the word in quotes")
-    if isinstance(value, float) and not math.isfinite(value):
-        raise ValueError("a level must be a finite number or a word")
-    return value
-
-
-Level = Annotated[str | float | int, BeforeValidator(_level)]
-Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=40)]
-Text = Annotated[str, Field(min_length=1)]
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Speed = Annotated[float, Field(strict=True, gt=0.0, le=3.0)]
-StepFrequency = Annotated[float, Field(strict=True, ge=30.0, le=240.0)]
-Reference = Annotated[str, Field(pattern=r"^\$[A-Za-z][A-Za-z0-9_]*$")]
-Key = Literal[
-    "left", "right", "up", "down", "enter", "space", "escape", "tab", "backspace",
-    "a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m",
-    "n", "o", "p", "q", "r", "s", "t", "u", "v", "w", "x", "y", "z",
-    "0", "1", "2", "3", "4", "5", "6", "7", "8", "9",
-]  # fmt: skip
-
-
-class Part(BaseModel):
-    """Every part of a study file: unknown keys are refused, values never change after reading."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class TextPage(Part):
@@ -90,7 +61,12 @@ class Participants(Part):
     planned: int = Field(ge=1, le=100_000, strict=True, description="Number of participants planned.")
     between: dict[Name, Annotated[list[Name], Field(min_length=2)]] = Field(
         default_factory=dict,
-        description="Between-participant factors: a choice question's id and its levels.",
+        description="Between-participant factors and their levels: what participants answer to the choice question "
+        "of that id, or what the program assigns.",
+    )
+    assigned: list[Name] = Field(
+        default_factory=list,
+        description="Those of the between-participant factors that the program assigns, in balanced random order.",
     )
     questions: list[Question] = Field(default_factory=list, description="Asked after consent, in this order.")
 
@@ -383,10 +359,13 @@ class Study(Part):
     factors: dict[Name, Annotated[list[Level], Field(min_length=1)]] = Field(
         min_length=1, description="Within-participant factors and their levels, in the order of the tables."
     )
-    repetitions: int = Field(ge=1, le=1000, strict=True, description="Trials per condition.")
-    order: Literal["random", "blocked", "sequential"] = Field(
-        "random",
-        description="random: all trials shuffled; blocked: every condition once per block, shuffled.",
+    repetitions: int = Field(
+        ge=1, le=1000, strict=True, description="Trials per condition; in an adaptive order, trials per track."
+    )
+    order: Order = Field(
+        default_factory=lambda: ListOrder(kind="random"),
+        description="A word (random: all trials shuffled; blocked: every condition once per block, shuffled; "
+        "sequential: as in the file), or a mapping with kind: squares, limits, adaptive placement.",
     )
     practice: list[Practice] = Field(default_factory=list, description="Training trials, in this order.")
     breaks: Breaks | None = None

@@ -22,6 +22,10 @@ Place = tuple[str | int, ...]
 
 MISSING = "this key is missing"
 
+ORDER_TAGS = {"random", "blocked", "sequential", "latin_square", "balanced_latin_square", "adaptive", "staircase",
+              "weighted", "quest_plus"}  # fmt: skip
+"""Kinds of order, which pydantic puts into the place of a mistake although they are no keys of the file."""
+
 
 @dataclass(frozen=True)
 class Mistake:
@@ -175,13 +179,16 @@ def _plain(node: Any) -> Any:
 def _explain(error: Any) -> Mistake:
     """One of pydantic's errors in the words of an experimenter."""
     where: Place = tuple(part for part in error["loc"] if not _is_type_tag(part))
-    kind, value, limits = error["type"], error["input"], error.get("ctx") or {}
+    kind, limits = error["type"], error.get("ctx") or {}
+    value = limits.get("tag", error["input"])
     shown = repr(value) if len(repr(value)) <= 60 else repr(value)[:57] + "..."
     if kind == "extra_forbidden":
         allowed = _allowed_keys(where[:-1])
         near = difflib.get_close_matches(str(where[-1]), allowed, n=1, cutoff=0.6)
         way = f"did you mean {near[0]}?" if near else f"allowed here: {', '.join(allowed)}"
         return Mistake(where, f"unknown key; {way}", on_key=True)
+    if kind == "union_tag_not_found":
+        return Mistake(where, "the key kind is missing; it says which of several parts this is")
     if kind == "missing":
         return Mistake(where, MISSING, on_key=True)
     if kind in ("greater_than_equal", "greater_than", "less_than_equal", "less_than"):
@@ -213,36 +220,30 @@ def _is_type_tag(part: Any) -> bool:
     """True for the branch names that pydantic puts into the location of a union (not keys of the file)."""
     return isinstance(part, str) and (
         part in {"choice", "number", "text", "str", "float", "int", "[key]"} - {"text"}
+        or part in ORDER_TAGS
         or part.startswith(("constrained-", "function-"))
     )
 
 
 def _allowed_keys(where: Place) -> list[str]:
-    """Keys that may stand at a place of the study file."""
-    model: Any = Study
+    """Keys that may stand at a place of the study file; where there are several kinds of part, those of all."""
+    models: list[Any] = [Study]
     for part in where:
-        if isinstance(part, int):
-            continue
-        fields = {f.alias or n: f for n, f in model.model_fields.items()} if _is_model(model) else {}
-        model = _model_in(fields[part].annotation) if part in fields else None
-        if model is None:
-            return []
-    return [f.alias or n for n, f in model.model_fields.items()] if _is_model(model) else []
+        if not isinstance(part, int):
+            fields = {f.alias or n: f for model in models for n, f in model.model_fields.items()}
+            models = _models_in(fields[part].annotation) if part in fields else []
+    return list(dict.fromkeys(f.alias or n for model in models for n, f in model.model_fields.items()))
 
 
 def _is_model(kind: Any) -> bool:
     return isinstance(kind, type) and issubclass(kind, BaseModel)
 
 
-def _model_in(annotation: Any) -> Any:
-    """The first study part named in a type annotation such as list[Part] or Part | None."""
+def _models_in(annotation: Any) -> list[Any]:
+    """The study parts named in a type annotation such as list[Part] or Part | OtherPart."""
     if _is_model(annotation):
-        return annotation
-    for argument in getattr(annotation, "__args__", ()):
-        found = _model_in(argument)
-        if found is not None:
-            return found
-    return None
+        return [annotation]
+    return [model for argument in getattr(annotation, "__args__", ()) for model in _models_in(argument)]
 
 
 def _placed(document: Any, mistake: Mistake) -> Mistake:

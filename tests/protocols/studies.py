@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from functools import cache
 
+from pydantic import TypeAdapter
+
+from protocols.order import Order
 from protocols.study import Study
 from protocols.study_file import StudyFile, parse_study, read_study
 
@@ -43,3 +46,9 @@ def short() -> StudyFile:
 def study() -> Study:
     """The shipped study."""
     return read_study("walk_ratio").study
+
+
+def ordered(old: Study, **order: object) -> Study:
+    """The study with another order, and other factors where `factors` and `repetitions` are given."""
+    changes = {name: order.pop(name) for name in ("factors", "repetitions") if name in order}
+    return old.model_copy(update={"order": TypeAdapter(Order).validate_python(order), **changes})

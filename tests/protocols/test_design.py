@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections import Counter
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from protocols.design import conditions, default_seed, make_trials, practice_trials
-from tests.protocols.studies import study
+from tests.protocols.studies import ordered, study
 
 
 def cell(trial):
@@ -36,14 +39,14 @@ def test_other_seeds_give_other_orders():
 
 
 def test_blocked_order_shows_every_condition_once_per_block():
-    blocked = study().model_copy(update={"order": "blocked"})
+    blocked = ordered(study(), kind="blocked")
     trials = make_trials(blocked, 3)
     for block in (1, 2, 3, 4):
         assert len({cell(t) for t in trials if t.block == block}) == 24
 
 
 def test_sequential_order_is_the_order_of_the_file():
-    trials = make_trials(study().model_copy(update={"order": "sequential"}), 3)
+    trials = make_trials(ordered(study(), kind="sequential"), 3)
     assert cell(trials[0]) == ("F1", 0.8, 80)
     assert cell(trials[1]) == ("F1", 0.8, 120)
     assert cell(trials[24]) == ("F1", 0.8, 80)
@@ -67,3 +70,14 @@ def test_training_uses_actors_who_are_not_in_the_experiment_at_one_speed_from_hi
 def test_default_seeds_differ_between_participants_and_runs():
     seeds = {default_seed("walk_ratio", f"P{p:02d}", run) for p in range(100) for run in (1, 2)}
     assert len(seeds) == 200
+
+
+@pytest.mark.parametrize(
+    ("kind", "digest"),
+    [("random", "abf23ea96750b829"), ("blocked", "aa76dd71984f8aca"), ("sequential", "380cc16790c56585")],
+)
+def test_the_orders_of_the_first_released_version_are_kept_for_ever(kind, digest):
+    # recorded with version 0.1.0 of protocols/design.py before squares and limits existed
+    trials = make_trials(ordered(study(), kind=kind), 5)
+    text = json.dumps([[t.number, t.block, t.repetition, dict(t.levels)] for t in trials])
+    assert hashlib.sha256(text.encode()).hexdigest()[:16] == digest

@@ -1,0 +1,106 @@
+"""A run with adaptive placement, from the study file to the journal and on after an interruption."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from experiment_app.run_folder import journal_lines
+from protocols.adaptive import after_response, begin_tracks
+from protocols.consistency import inconsistencies
+from protocols.events import Closed
+from protocols.record import TrialRecord
+from protocols.session import answer_columns, handle
+from protocols.study_file import StudyFile, parse_study
+from tests.experiment_app.sessions import opened, play
+from tests.protocols.studies import changed
+
+RULES = {
+    "staircase": "{kind: staircase, start: [120, 80], steps: [2, 1]}",
+    "weighted": "{kind: weighted, up: 2}",
+    "quest_plus": "{kind: quest_plus, guess: 0.0, spreads: [2, 8]}",
+}
+
+
+def adaptive(rule: str) -> StudyFile:
+    """Two actors whose start is placed by whether the walk ratio is above 0.006; 12 trials per track."""
+    file = parse_study(
+        "adaptive.yaml",
+        changed(
+            ("actor: [F1, F2, M1, M2]  ", "actor: [F1, M1]"),
+            ("speed: [0.8, 1.0, 1.2]  ", "speed: [1.0]"),
+            ("start: [80, 120]  ", "start: [80, 90, 100, 110, 120]"),
+            ("repetitions: 4  ", "repetitions: 12"),
+            ("order: random", f"order: {{kind: adaptive, of: start, yes: walk_ratio >= 0.006, rule: {RULES[rule]}}}"),
+            ("within: [actor, speed, start]", "within: [actor, start]"),
+            ("{factor: speed, bound: 0.0003}", "{factor: actor, bound: 0.0003}"),
+            ("F1: 0.00690, F2: 0.00560, M1: 0.00700, M2: 0.00700", "F1: 0.00690, M1: 0.00700"),
+            ("{kind: interaction, x: actor, lines: speed}", "{kind: interaction, x: actor, lines: start}"),
+        ),
+    )
+    assert inconsistencies(file.study) == []
+    return file
+
+
+def trials(run):
+    lines = journal_lines(run.journal)[0]
+    return [line for line in lines if line["kind"] == "trial" and not line["practice"]]
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_every_level_shown_follows_from_the_answers_before_it(rule, tmp_path):
+    file = adaptive(rule)
+    run = opened(tmp_path, study=file)
+    play(run)
+    shown = trials(run.run)
+    assert len(shown) == (48 if rule == "staircase" else 24)
+    tracks = begin_tracks(file.study)
+    for trial in shown:
+        assert trial["factors"]["start"] == tracks[trial["track"]].level
+        tracks = after_response(file.study, tracks, trial["track"], {**trial["factors"], **trial["response"]})
+    begun = {
+        line["number"]: line["factors"]
+        for line in journal_lines(run.run.journal)[0]
+        if line["kind"] == "begin" and not line["practice"]
+    }
+    assert begun == {trial["number"]: trial["factors"] for trial in shown}
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_after_an_interruption_the_levels_go_on_as_if_there_had_been_none(rule, tmp_path, monkeypatch):
+    import experiment_app.loop as loop
+
+    file = adaptive(rule)
+    finished = 0
+
+    def stopping(session, event):
+        """Closes the window in the middle of the eighth trial."""
+        nonlocal finished
+        before = len(session.emitted)
+        session = handle(session, event)
+        finished += sum(isinstance(r, TrialRecord) and not r.practice for r in session.emitted[before:])
+        return handle(session, Closed(event.time, "window closed")) if finished == 8 else session
+
+    monkeypatch.setattr(loop, "handle", stopping)
+    first = opened(tmp_path, study=file)
+    play(first)
+    monkeypatch.setattr(loop, "handle", handle)
+    assert len(trials(first.run)) == 8
+    again = opened(tmp_path, study=file)
+    assert again.continued
+    play(again)
+    tracks = begin_tracks(file.study)
+    for trial in trials(again.run):
+        assert trial["factors"]["start"] == tracks[trial["track"]].level
+        tracks = after_response(file.study, tracks, trial["track"], {**trial["factors"], **trial["response"]})
+    assert [t["number"] for t in trials(again.run)] == list(range(1, len(trials(again.run)) + 1))
+    assert any(line["kind"] == "continue" for line in journal_lines(again.run.journal)[0])
+
+
+def test_what_counts_as_an_answer_is_what_the_journal_says(tmp_path):
+    run = opened(tmp_path, study=adaptive("staircase"))
+    play(run)
+    line = trials(run.run)[0]
+    record = TrialRecord(**{k: v for k, v in line.items() if k not in ("kind", "crc")})
+    assert answer_columns(replace(record, response_time=1.0))["walk_ratio"] == line["response"]["walk_ratio"]
