@@ -29,6 +29,11 @@ AIM = 0.9  # m above the ground at the place an elevated camera looks at: the mi
 NARROWEST = 0.8
 """Width over height that still shows a walker with the arms' swing in every named view."""
 
+CROWN_AT = 0.88
+"""Of half the field of view: as high as the crown may stand for a machine's sake."""
+
+NOTHING = np.zeros((0, 3))
+
 LEGS_TOP = 0.50  # of stature: the legs view ends here, just below the hips
 LEGS_MARGIN = 0.08  # of stature: ground shown below the soles in the legs view
 
@@ -61,7 +66,9 @@ class Viewpoint:
         return 0.5 * picture_height / (self.half_height * max(distance, NEAR))
 
 
-def place_camera(camera: Camera, aspect: float, stature: float, walker: tuple[float, float, float]) -> Viewpoint:
+def place_camera(
+    camera: Camera, aspect: float, stature: float, walker: tuple[float, float, float], machine: Floats = NOTHING
+) -> Viewpoint:
     """Put the camera so that the walker is centred vertically, or at the place the scene gives it.
 
     camera:  the scene's camera.
@@ -69,13 +76,15 @@ def place_camera(camera: Camera, aspect: float, stature: float, walker: tuple[fl
     stature: m, of the walker looked at.
     walker:  (x, y, z) m, where the walker is now. Views that follow keep pace with the walker, which on a
              treadmill means that they stand still; the others do not look at it.
+    machine: (N, 3) m, corners of what the walker stands on, to be in the picture too; N may be 0.
 
     The pitch is the mean of the elevation of crown and soles, so both have the same margin whatever the
     distance, height or aspect ratio. In pictures narrower than NARROWEST (upright displays, halves of old screens)
     the field of view is widened so that the horizontal one is what it would be there; otherwise it is exactly
     what the scene asks for. Only the legs view is narrower where that would show more than legs: it ends LEGS_TOP
-    above and LEGS_MARGIN below. An elevated camera has its place in the middle of the picture, AIM above the
-    ground; first person looks straight ahead.
+    above and LEGS_MARGIN below. With a machine the camera looks down to hold it too; where the field of view is
+    too narrow for both, the walker is whole and the machine is cut. An elevated camera has its place in the
+    middle of the picture, AIM above the ground; first person looks straight ahead.
     """
     heading = HEADINGS[camera.view] if camera.heading is None else camera.heading
     azimuth = math.radians(heading - 180.0)
@@ -84,6 +93,10 @@ def place_camera(camera: Camera, aspect: float, stature: float, walker: tuple[fl
     if camera.follows:
         base, distance = np.array(walker), camera.distance
         pitch, half_angle = _framed(camera, stature, half_angle)
+        if len(machine) and camera.view != "legs":
+            offset = machine - base
+            lowest = np.arctan2(offset[:, 1] - camera.height, distance - offset @ outwards).min()
+            pitch = _lowered(pitch, half_angle, math.atan2(stature - camera.height, distance), float(lowest))
     else:
         base = np.array([camera.place[0], 0.0, camera.place[1]])
         distance = camera.distance if camera.view == "elevated" else 0.0
@@ -107,6 +120,12 @@ def _framed(camera: Camera, stature: float, half_angle: float) -> tuple[float, f
     if camera.view == "legs":
         half_angle = min(half_angle, 0.5 * (above - below))
     return 0.5 * (above + below), half_angle
+
+
+def _lowered(pitch: float, half_angle: float, crown: float, lowest: float) -> float:
+    """The pitch at which crown and machine have equal margins, or the crown a small one; angles in radians."""
+    middle = 0.5 * (crown + lowest)
+    return min(pitch, max(middle, crown - CROWN_AT * half_angle))
 
 
 def look(eye: Floats, forward: Floats) -> Floats:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import moderngl
-import numpy as np
 
-from experiment_app.render.cameras import Viewpoint, place_camera
+from experiment_app.render.cameras import NOTHING, Viewpoint, place_camera
 from experiment_app.render.contact_pass import EVERYWHERE, ContactPass
 from experiment_app.render.drawn import DrawnWalker
 from experiment_app.render.ground_pass import GroundPass
@@ -22,7 +21,6 @@ from experiment_app.render.viewports import Viewport
 from experiment_app.render.walkers_pass import WalkersPass
 from experiment_app.scene import STREET_HALF_WIDTH, Scene
 
-NOTHING = np.zeros((0, 3))
 ROADWAY = (0.0, 0.0, STREET_HALF_WIDTH, 1e9)
 
 
@@ -157,9 +155,10 @@ class Stage:
 
 def seen_from(scene: Scene, drawn: Sequence[DrawnWalker], aspect: float) -> Viewpoint:
     """The scene's camera in the world; a view that follows looks at the first walker."""
+    machine = corners(_middle(scene)) if scene.ground == "treadmill" else NOTHING
     if not drawn:
-        return place_camera(scene.camera, aspect, 1.75, (0.0, 0.0, 0.0))
-    return place_camera(scene.camera, aspect, drawn[0].body.stature, drawn[0].place)
+        return place_camera(scene.camera, aspect, 1.75, (0.0, 0.0, 0.0), machine)
+    return place_camera(scene.camera, aspect, drawn[0].body.stature, drawn[0].place, machine)
 
 
 def _middle(scene: Scene) -> tuple[float, float, float]:

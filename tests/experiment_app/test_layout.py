@@ -251,3 +251,15 @@ def test_any_page_at_all_fits_without_overlaps(page, window):
     assert layout.complete
     assert all(part.x >= 0 and part.right <= window[0] for part in rectangles(layout))
     assert not [pair for pair in combinations(rectangles(layout), 2) if pair[0].overlaps(pair[1])]
+
+
+@pytest.mark.parametrize(("width", "height", "ratio"), [(1280, 720, 1.0), (1920, 1080, 1.0), (3840, 2160, 2.0)])
+def test_titles_stand_at_one_height_on_all_ordinary_pages(width: int, height: int, ratio: float) -> None:
+    """From a page of two words to one of a hundred and twenty with buttons."""
+    button = Row("", (Box("next", "Continue", "button"),))
+    pages = [
+        Page((Line("Title", "title"), Line("word " * words)), rows, hint=hint)
+        for words, rows, hint in ((2, (), ""), (60, (), "Press Enter"), (120, (button,), "Press Enter"))
+    ]
+    tops = {layout_page(page, width, height, ratio).texts[0].rectangle.y for page in pages}
+    assert len(tops) == 1
