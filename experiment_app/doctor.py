@@ -139,7 +139,7 @@ def _on_screen() -> Findings:
 
         def show(scene: Scene) -> float:
             window.poll(cast(Session, None))
-            return window.show(scene)
+            return window.show(scene).time
 
         intervals = _timed(show)
         about = window.description()

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import gc
+from dataclasses import replace
 from typing import Protocol
 
+from experiment_app.frames import TrialFrames
 from experiment_app.scene import Scene
 from experiment_app.staging import stage
 from experiment_app.windows.window import Window
 from protocols.events import Saved, Shown
-from protocols.record import FrameIntervals, Record, TrialRecord
+from protocols.record import Key, Record, TrialRecord
 from protocols.session import Interval, Session, advance, drained, handle
-
-LATE = 1.5
-"""A frame is late when it appears more than this many refresh periods after the one before."""
 
 
 class Recorder(Protocol):
@@ -30,31 +29,42 @@ class Recorder(Protocol):
 def run_session(session: Session, window: Window, journal: Recorder) -> Session:
     """Plays a session to its end and returns it; every record goes to the journal.
 
-    A trial begins only when the journal has said that the trial before is safe.
+    A trial begins only when the journal has said that the trial before is safe. Between events the session stays
+    where it is and only a preview of it is drawn, so that a key whose time stamp arrives a little late still
+    counts from its own time, and the same keys give the same trial whatever frames were drawn.
     """
-    frames = Frames()
+    frames, scene = TrialFrames(), Scene()
     while not session.done:
         now, events = window.poll(session)
         for event in events:
             session = handle(session, event)
-        session = advance(session, now)
+        session = _passed(session, now)
         if isinstance(session.stage, Interval) and not session.stage.saved and not session.emitted and journal.saved:
             session = handle(session, Saved(now))
-        session, records = drained(session)
-        if records:
-            journal.write(_with_frames(records, frames, window))
+        session = _write(session, journal, window, frames, scene)
         if session.done:
             break
         showing = session.trial is not None and session.overlay is None
-        scene = stage(_previewed(session, window.next_display_time()))
-        flip = window.show(scene)
+        predicted = round(window.next_display_time(), 6)
+        newest = stage(_previewed(session, predicted))
+        flip = window.show(newest)
         if session.shown is None:
-            frames = Frames()
-            session = handle(session, Shown(flip))
-        frames = frames.after(flip, scene) if showing else replace(frames, last=None)
-    session, records = drained(session)
-    journal.write(list(records))
-    return session
+            frames = TrialFrames()
+            session = handle(session, Shown(flip.time))
+        if showing:
+            scene = newest
+            frames.add(predicted, flip)
+        else:
+            frames.pause()
+            _collect_garbage(session)
+        session = _write(session, journal, window, frames, scene)
+    return _write(session, journal, window, frames, scene)
+
+
+def _passed(session: Session, now: float) -> Session:
+    """The session once time alone has moved it on to something new by `now` (s), else as it was."""
+    later = advance(session, now)
+    return later if later.emitted or later.index != session.index else session
 
 
 def _previewed(session: Session, seen: float) -> Session:
@@ -62,35 +72,26 @@ def _previewed(session: Session, seen: float) -> Session:
     return advance(session, seen) if session.trial is not None else session
 
 
-@dataclass(frozen=True)
-class Frames:
-    """The frames of one trial so far; a pause ends a stretch of frames, so its length is no interval.
-
-    last: flip (s) of the frame before, None at the start of a stretch; intervals: s; scene: the newest.
-    """
-
-    count: int = 0
-    last: float | None = None
-    intervals: tuple[float, ...] = ()
-    scene: Scene | None = None
-
-    def after(self, flip: float, scene: Scene) -> Frames:
-        """The frames once one more was seen at `flip` (s)."""
-        new = () if self.last is None else (flip - self.last,)
-        return Frames(self.count + 1, flip, self.intervals + new, scene)
+def _collect_garbage(session: Session) -> None:
+    """Collects between trials what a live run leaves uncollected in them (`live.without_collection`)."""
+    if not gc.isenabled() and isinstance(session.stage, Interval) and not session.stage.saved:
+        gc.collect()
 
 
-def _with_frames(records: tuple[Record, ...], frames: Frames, window: Window) -> list[Record]:
-    """The records, a finished trial's with its frames: how many, how many late, and their intervals."""
+def _write(session: Session, journal: Recorder, window: Window, frames: TrialFrames, scene: Scene) -> Session:
+    """Hands the session's records to the journal, with what only the loop knows: frames, and the gait as drawn."""
+    session, records = drained(session)
     whole: list[Record] = []
     for record in records:
-        if not isinstance(record, TrialRecord) or not window.period or frames.scene is None:
-            whole.append(record)
-            continue
-        late = sum(interval > LATE * window.period for interval in frames.intervals)
-        in_ms = tuple(round(1000.0 * interval, 3) for interval in frames.intervals)
-        whole.append(FrameIntervals(record.time, record.number, record.practice, record.attempt, in_ms))
-        walker = replace(frames.scene.walkers[0], step_frequency=record.response["step_frequency"])
-        measured = window.measure(replace(frames.scene, walkers=(walker,)))
-        whole.append(replace(record, frames=frames.count, late_frames=late, measured=measured))
-    return whole
+        if isinstance(record, Key):
+            record = replace(record, frame=len(frames))
+        elif isinstance(record, TrialRecord) and window.period and len(frames):
+            log = frames.log(record, window.period)
+            walker = replace(scene.walkers[0], step_frequency=record.response["step_frequency"])
+            measured = window.measure(replace(scene, walkers=(walker,)))
+            whole.append(log)
+            record = replace(record, frames=len(frames), late_frames=len(log.late), measured=measured)
+        whole.append(record)
+    if whole:
+        journal.write(whole)
+    return session

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
+from zlib import crc32
 
 import numpy as np
 
@@ -74,6 +76,21 @@ def walk_of(actor: str, body: str, making: Making, speed: float) -> MadeWalk:
     Raises MethodError or CoverageError, with a sentence, where it cannot be made.
     """
     return made_walk(cast(actor, body)[0], making, speed)
+
+
+def pose_checksum(drawn: Sequence[DrawnWalker]) -> str:
+    """8 hexadecimal digits that tell whether the same poses were drawn at the same places; "" without walkers.
+
+    CRC-32 of matrices and places in whole units of 1e-4 (0.1 mm for places), so that two computers whose
+    processors round differently in the last digit agree.
+    """
+    if not drawn:
+        return ""
+    checksum = 0
+    for walker in drawn:
+        values = np.append(walker.matrices.ravel(), walker.place)
+        checksum = crc32(np.rint(values * 1e4).astype("<i4").tobytes(), checksum)
+    return f"{checksum:08x}"
 
 
 def measured_gait(scene: Scene) -> dict[str, float]:

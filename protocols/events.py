@@ -7,18 +7,25 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class KeyDown:
-    """A key went down; key repeats of the operating system are not events."""
+    """A key went down; key repeats of the operating system are not events.
+
+    source: what gave the time, as in `protocols.record.Key`; uncertainty_ms: how far it may be off.
+    """
 
     time: float
     key: str
+    source: str = "simulated"
+    uncertainty_ms: float = 0.0
 
 
 @dataclass(frozen=True)
 class KeyUp:
-    """A key went up."""
+    """A key went up; the fields are those of KeyDown."""
 
     time: float
     key: str
+    source: str = "simulated"
+    uncertainty_ms: float = 0.0
 
 
 @dataclass(frozen=True)

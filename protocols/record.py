@@ -75,7 +75,12 @@ class PageShown:
 
 @dataclass(frozen=True)
 class Key:
-    """A key going down or up during a trial; time in s on the run's clock."""
+    """A key going down or up during a trial; time in s on the run's clock.
+
+    source:         what gave the time: x-server, psychtoolbox, arrival, gamepad, mouse; simulated for a simulation.
+    uncertainty_ms: how far the time may be from the moment the computer learned of the key, as measured in this run.
+    frame:          number (from 0) of the first frame of the trial drawn with this key known.
+    """
 
     kind = "key"
     time: float
@@ -83,6 +88,9 @@ class Key:
     practice: bool
     key: str
     down: bool
+    source: str = "simulated"
+    uncertainty_ms: float = 0.0
+    frame: int = 0
 
 
 @dataclass(frozen=True)
@@ -149,15 +157,30 @@ class Resumed:
 
 
 @dataclass(frozen=True)
-class FrameIntervals:
-    """Times between the flips of one trial, ms."""
+class FrameLog:
+    """Every frame of one trial, in the order they were seen; the first four lists are equally long.
+
+    period:    s between refreshes of the display, as measured.
+    flips:     s on the run's clock, read after the buffer swap and the driver's finish.
+    predicted: s, when the frame was expected to be seen: the moment its poses were drawn for.
+    cpu_ms:    ms of processor time of the drawing thread, from the scene to the last drawing call.
+    poses:     a checksum of the joint matrices and places that were drawn, 8 hexadecimal digits.
+    stretches: numbers (from 0) of the frames that begin the trial or go on with it after a pause.
+    late:      numbers of the frames seen more than 1.5 periods after the one before in the same stretch.
+    """
 
     kind = "frames"
     time: float
     number: int
     practice: bool
     attempt: int
-    intervals_ms: tuple[float, ...]
+    period: float
+    flips: tuple[float, ...]
+    predicted: tuple[float, ...]
+    cpu_ms: tuple[float, ...]
+    poses: tuple[str, ...]
+    stretches: tuple[int, ...]
+    late: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -195,7 +218,7 @@ class Withdrawn:
 
 Record = (
     Header | Consented | Answered | PageShown | Key | TrialBegun | TrialRecord
-    | Paused | Resumed | FrameIntervals | Continued | Ended | Withdrawn
+    | Paused | Resumed | FrameLog | Continued | Ended | Withdrawn
 )  # fmt: skip
 
 

@@ -267,7 +267,7 @@ def _in_trial(session: Session, trial: AdjustmentTrial, event: Event) -> Session
         task = trial.task
         if event.key in (task.lower_key, task.raise_key, task.confirm_key):
             down = isinstance(event, KeyDown)
-            session = _emit(session, Key(event.time, step.trial.number, step.trial.practice, event.key, down))
+            session = _emit(session, _key_record(step, event, down))
     if isinstance(event, FocusLost) and trial.held:
         session = _emit(session, Key(event.time, step.trial.number, step.trial.practice, "focus", False))
     trial = adjustment.handle(trial, event)
@@ -283,6 +283,11 @@ def _in_trial(session: Session, trial: AdjustmentTrial, event: Event) -> Session
 def answer_columns(record: TrialRecord) -> dict[str, object]:
     """What a condition on a trial's answer may name: its factors, the values of its response, and response_time."""
     return {**record.factors, **record.response, "response_time": record.response_time}
+
+
+def _key_record(step: TrialStep, event: KeyDown | KeyUp, down: bool) -> Key:
+    trial = step.trial
+    return Key(event.time, trial.number, trial.practice, event.key, down, event.source, event.uncertainty_ms)
 
 
 def _trial_record(session: Session, step: TrialStep, trial: AdjustmentTrial, time: float) -> TrialRecord:

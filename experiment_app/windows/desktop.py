@@ -13,9 +13,10 @@ import moderngl
 from experiment_app.errors import UsageError
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Scene
-from experiment_app.walkers import drawn_walkers, measured_gait
+from experiment_app.walkers import drawn_walkers, measured_gait, pose_checksum
 from experiment_app.windows.keys import key_name
 from experiment_app.windows.pacing import Pacing, measured
+from experiment_app.windows.window import Flip
 from protocols.events import Clicked, Closed, Event, FocusLost, KeyDown, KeyUp, Typed
 from protocols.session import Session
 
@@ -113,21 +114,21 @@ class DesktopWindow:
         """The next refresh after now (s)."""
         return self._pacing.display_time(self._now(), self._last_flip)
 
-    def show(self, scene: Scene) -> float:
-        """Draws the scene, swaps, waits until it is done, and returns the time (s)."""
-        began = self._now()
+    def show(self, scene: Scene) -> Flip:
+        """Draws the scene, swaps, waits until it is done."""
+        began, cpu, walkers = self._now(), time.thread_time(), drawn_walkers(scene)
         self._page_scene = scene
         size = glfw.get_framebuffer_size(self._handle)
         if min(size) > 0:
             self._renderer.resize(size, self._pixel_ratio())
-            self._renderer.draw(scene, drawn_walkers(scene), self._context.screen)
+            self._renderer.draw(scene, walkers, self._context.screen)
         self._set_cursor(scene)
-        drawn = self._now()
+        drawn, cpu_ms = self._now(), 1e3 * (time.thread_time() - cpu)
         glfw.swap_buffers(self._handle)
         self._context.finish()
         self._last_flip = self._now()
         self._cost = 0.8 * self._cost + 0.2 * (drawn - began)
-        return self._last_flip
+        return Flip(self._last_flip, cpu_ms, pose_checksum(walkers))
 
     def measure(self, scene: Scene) -> dict[str, float]:
         """The scene's walker measured as it is drawn."""
@@ -166,13 +167,13 @@ class DesktopWindow:
         def on_key(_: Any, key: int, scancode: int, action: int, modifiers: int) -> None:
             now = self._now()
             if action == glfw.PRESS and key == glfw.KEY_TAB and modifiers & glfw.MOD_SHIFT:
-                self._events.append(KeyDown(now, "backtab"))
+                self._events.append(KeyDown(now, "backtab", "arrival"))
             elif action == glfw.PRESS:
-                self._events.append(KeyDown(now, key_name(key, scancode)))
+                self._events.append(KeyDown(now, key_name(key, scancode), "arrival"))
             elif action == glfw.RELEASE:
-                self._events.append(KeyUp(now, key_name(key, scancode)))
+                self._events.append(KeyUp(now, key_name(key, scancode), "arrival"))
             elif key == glfw.KEY_BACKSPACE:  # holding backspace empties a field; no task listens to it
-                self._events.append(KeyDown(now, "backspace"))
+                self._events.append(KeyDown(now, "backspace", "arrival"))
 
         def on_text(_: Any, code: int) -> None:
             self._events.append(Typed(self._now(), chr(code)))

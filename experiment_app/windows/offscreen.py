@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -13,7 +14,8 @@ from experiment_app.errors import UsageError
 from experiment_app.observer import SimulatedParticipant
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Scene
-from experiment_app.walkers import drawn_walkers, measured_gait
+from experiment_app.walkers import drawn_walkers, measured_gait, pose_checksum
+from experiment_app.windows.window import Flip
 from protocols.events import Event
 from protocols.session import Session
 
@@ -85,13 +87,15 @@ class OffscreenWindow:
         """The time of the frame about to be drawn."""
         return self._now
 
-    def show(self, scene: Scene) -> float:
-        """Draws the scene and returns its simulated time (s)."""
-        now = self._now
-        self._renderer.draw(scene, drawn_walkers(scene), self._target)
+    def show(self, scene: Scene) -> Flip:
+        """Draws the scene; its flip is the frame's simulated time."""
+        now, begun = self._now, time.thread_time()
+        drawn = drawn_walkers(scene)
+        self._renderer.draw(scene, drawn, self._target)
+        cpu_ms = 1e3 * (time.thread_time() - begun)
         self._seen(now, scene, lambda: self._renderer.read_pixels(self._target))
         self._frames += 1
-        return now
+        return Flip(now, cpu_ms, pose_checksum(drawn))
 
     def measure(self, scene: Scene) -> dict[str, float]:
         """The scene's walker measured as it is drawn."""

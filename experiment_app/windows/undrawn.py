@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 from experiment_app.observer import SimulatedParticipant
 from experiment_app.scene import Scene
+from experiment_app.windows.window import Flip
 from protocols.events import Event
 from protocols.session import Interval, Session
 
@@ -41,9 +42,9 @@ class UndrawnWindow:
         """Now: there is no display."""
         return self._now
 
-    def show(self, scene: Scene) -> float:
+    def show(self, scene: Scene) -> Flip:
         """Draws nothing; returns the simulated time (s)."""
-        return self._now
+        return Flip(self._now)
 
     def measure(self, scene: Scene) -> dict[str, float]:
         """Empty: nothing is drawn."""

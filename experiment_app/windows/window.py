@@ -3,11 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 from experiment_app.scene import Scene
 from protocols.events import Event
 from protocols.session import Session
+
+
+@dataclass(frozen=True)
+class Flip:
+    """What became of a frame.
+
+    time:   s, when it appeared. cpu_ms: processor time of drawing it.
+    pose:   checksum of the walkers as drawn (`walkers.pose_checksum`), "" when nothing was drawn.
+    """
+
+    time: float
+    cpu_ms: float = 0.0
+    pose: str = ""
 
 
 class Window(Protocol):
@@ -22,8 +36,8 @@ class Window(Protocol):
     def next_display_time(self) -> float:
         """When the frame about to be drawn will be seen (s)."""
 
-    def show(self, scene: Scene) -> float:
-        """Draws, waits for the display, and returns the time the frame appeared (s)."""
+    def show(self, scene: Scene) -> Flip:
+        """Draws, waits for the display, and returns when the frame appeared and what it was."""
 
     def measure(self, scene: Scene) -> dict[str, float]:
         """Speed, step frequency, step length, walk ratio and foot slide of the scene's walker as it is drawn.

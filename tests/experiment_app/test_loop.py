@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import pairwise
+
 import pytest
 
 from experiment_app.loop import run_session
 from experiment_app.observer import SimulatedParticipant, draw_observer
 from experiment_app.scene import Scene
-from protocols.plan import make_plan
-from protocols.record import FrameIntervals, TrialBegun, TrialRecord
+from experiment_app.windows.window import Flip
+from protocols.events import KeyDown, KeyUp
+from protocols.plan import TrialStep, make_plan
+from protocols.record import FrameLog, Key, TrialBegun, TrialRecord
 from protocols.session import begin
 from tests.protocols.studies import short
 
@@ -39,7 +44,7 @@ class Display:
     def next_display_time(self) -> float:
         return self.flip + PERIOD * (int((self.now - self.flip) / PERIOD) + 1)
 
-    def show(self, scene: Scene) -> float:
+    def show(self, scene: Scene) -> Flip:
         drawn = self.now + self.cost + (self.stall if self.frames == self.stall_at else 0.0)
         self.frames += 1
         refreshes = max(1, -(-(drawn - self.flip) // PERIOD))
@@ -49,7 +54,7 @@ class Display:
         if walking and not self.walking:
             self.first_seen.append(self.flip)
         self.walking = walking
-        return self.flip
+        return Flip(self.flip, 1e3 * self.cost, f"{self.frames:08x}")
 
     def measure(self, scene: Scene) -> dict[str, float]:
         return {"speed": scene.walkers[0].speed}
@@ -97,8 +102,10 @@ def test_onset_is_the_flip_of_the_trials_first_frame(cost):
 def test_without_a_stall_no_frame_is_late_and_every_interval_is_a_period():
     _, disk = play()
     assert [record.late_frames for record in of(disk, TrialRecord)] == [0] * 6
-    for frames in of(disk, FrameIntervals):
-        assert frames.intervals_ms == pytest.approx([1000.0 * PERIOD] * len(frames.intervals_ms), abs=0.002)
+    for frames in of(disk, FrameLog):
+        intervals = [later - earlier for earlier, later in pairwise(frames.flips)]
+        assert intervals == pytest.approx([PERIOD] * len(intervals), abs=2e-6)
+        assert frames.flips == pytest.approx(frames.predicted, abs=2e-6)
 
 
 def test_a_stall_of_40_ms_marks_exactly_its_trial():
@@ -108,6 +115,9 @@ def test_a_stall_of_40_ms_marks_exactly_its_trial():
     _, disk = play(stall_at=frame, stall=0.040)
     late = [record.late_frames for record in of(disk, TrialRecord)]
     assert late == [0, 0, 1, 0, 0, 0]
+    logs = of(disk, FrameLog)
+    first = round(third.onset / PERIOD)
+    assert [log.late for log in logs] == [(), (), (frame - first + 1,), (), (), ()]
     assert display.frames > frame
 
 
@@ -133,6 +143,48 @@ def test_the_same_observer_gives_the_same_responses_at_any_drawing_cost():
 
 def test_a_drawn_trial_holds_its_measured_gait_and_frame_count():
     _, disk = play()
-    for record, frames in zip(of(disk, TrialRecord), of(disk, FrameIntervals), strict=True):
+    for record, frames in zip(of(disk, TrialRecord), of(disk, FrameLog), strict=True):
         assert record.measured == {"speed": 1.0}
-        assert record.frames == len(frames.intervals_ms) + 1
+        assert record.frames == len(frames.flips) == len(frames.predicted) == len(frames.poses) == len(frames.cpu_ms)
+
+
+def test_each_key_names_the_first_frame_drawn_with_it_known():
+    _, disk = play()
+    logs = iter(of(disk, FrameLog))
+    log = next(logs)
+    for record in disk.records:
+        if isinstance(record, Key):
+            assert all(predicted > record.time for predicted in log.predicted[record.frame :])
+            assert record.frame == 0 or log.flips[record.frame - 1] < record.time + PERIOD
+        elif isinstance(record, TrialRecord):
+            log = next(logs, log)
+
+
+class OneHold(Display):
+    """A display whose person holds the left key for half a second, and whose events come `delay` s late."""
+
+    def __init__(self, delay: float) -> None:
+        super().__init__(None, 0.004)  # type: ignore[arg-type]
+        self.delay, self.planned, self.shown = delay, [], False
+
+    def poll(self, session):
+        self.now = max(self.now, self.flip + PERIOD - 0.006)
+        if session.trial is not None and session.shown is not None and not self.shown:
+            self.shown = True
+            names = ((0.5, KeyDown, "left"), (1.0, KeyUp, "left"), (2.7, KeyDown, "enter"))
+            self.planned = [kind(session.shown + after, key) for after, kind, key in names]
+        due = [event for event in self.planned if event.time + self.delay <= self.now]
+        self.planned = self.planned[len(due) :]
+        return self.now, due
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.003, 0.011, 0.040])
+def test_a_key_that_is_learned_of_late_counts_from_its_own_time(delay):
+    plan = make_plan(short().study, 1, 1)
+    trial = next(step for step in plan.steps if isinstance(step, TrialStep))
+    disk = Disk()
+    run_session(begin(replace(plan, steps=(trial,))), OneHold(delay), disk)
+    (record,) = of(disk, TrialRecord)
+    start = begin(replace(plan, steps=(trial,))).trial.start
+    assert record.response["step_frequency"] == pytest.approx(start - 0.5 * 10.0, abs=1e-9)
+    assert record.response_time == pytest.approx(2.7, abs=1e-9)

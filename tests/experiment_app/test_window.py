@@ -171,7 +171,8 @@ def test_a_whole_session_with_a_pause_is_in_the_journal(sit):
         assert trial["measured"]["step_frequency"] == pytest.approx(trial["response"]["step_frequency"], rel=0.005)
         assert trial["measured"]["speed"] == pytest.approx(trial["factors"]["speed"], rel=0.005)
     frames = [line for line in lines if line["kind"] == "frames"]
-    assert len(frames[0]["intervals_ms"]) == training["frames"] - 1
+    assert len(frames[0]["flips"]) == len(frames[0]["poses"]) == training["frames"]
+    assert (len(frames[0]["stretches"]), len(frames[1]["stretches"])) == (1, 2)  # the second trial was paused
 
 
 def test_refusing_consent_ends_politely_and_stores_only_the_refusal(sit):
