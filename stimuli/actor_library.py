@@ -24,7 +24,7 @@ from stimuli.blend_tree import Branch, Leaf, Tree
 from stimuli.bodies import load_body
 from stimuli.body import Body
 from stimuli.gait import Gait
-from stimuli.gait_model import COEFFICIENTS, SIGNALS
+from stimuli.gait_model import COEFFICIENTS, SIGNALS, WalkCurves
 from stimuli.retarget import Figure, scaled, walk_cycle
 from stimuli.skeleton import Floats
 
@@ -149,7 +149,7 @@ def actor_of(stored_actor: StoredActor, body: Body | None = None) -> Actor:
     worn = body or load_body("woman" if person.sex == "F" else "man")
     figure = Figure(scaled(worn.skeleton, person.height / worn.stature))
     cycles = [
-        walk_cycle(figure, cycle.coefficients, cycle.stance, cycle.speed, cycle.step_frequency)
+        walk_cycle(figure, WalkCurves.symmetric(cycle.coefficients, cycle.stance), cycle.speed, cycle.step_frequency)
         for cycle in stored_actor.cycles
     ]
     return Actor(

@@ -3,7 +3,8 @@
 The sixteen actors of Niay (2022, table 4.1) and two for training. Who they are stands in actor_table.csv; how
 they walk is the gait model at their sex, leg length and walk ratio plus a manner of their own: 0.8 of what one
 captured person does differently from the average and 0.6 of another's (0.64 + 0.36 = 1 keeps the spread between
-people). Their 25 cycles are made once when an actor is loaded. Knows no window, no clock.
+people). Of the mixtures of captured people those were chosen with which hip, knee and ankle, as drawn at comfort speed,
+stay within two standard deviations of adults for 95 % of the cycle, and no two actors walk alike. Their 25 cycles are made once when an actor is loaded. Knows no window, no clock.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from stimuli.blend import CycleTable, WalkCycle
 from stimuli.blend_tree import Branch, Leaf, Tree
 from stimuli.bodies import load_body
 from stimuli.body import Body
-from stimuli.gait_model import SIGNALS, GaitModel, Step, load_gait_model
+from stimuli.gait_model import SIGNALS, GaitModel, Step, WalkCurves, load_gait_model
 from stimuli.retarget import Figure, scaled, walk_cycle
 from stimuli.skeleton import Floats, Skeleton
 
@@ -35,6 +36,12 @@ POPULATION_WALK_RATIO = {"F": 0.00320, "M": 0.00327}
 
 LEG_SIGNALS = ("thigh", "shank", "foot", "foot_yaw", "knee_yaw", "foot_shift", "hips_shift")
 """Signals that follow the step's true length; the others follow how long it is for that person."""
+
+
+EARLIER_OFF = 0.02
+"""Share of the cycle by which the drawn shoe leaves the ground before the captured foot: its tip is stiffer than a
+forefoot, so that at the captured toe-off it would hold the leg back (set on four captures and the default actors: the
+drawn hip, knee and ankle are nearest to the captured ones from 0.02 to 0.03)."""
 
 
 class ActorError(ValueError):
@@ -168,13 +175,13 @@ def _cycle(
     figure: Figure, model: GaitModel, person: Person, manner: Floats, speed: float, frequency: float
 ) -> WalkCycle:
     coefficients, stance = walk_coefficients(model, person, manner, figure.leg_length, speed, frequency)
-    return walk_cycle(figure, coefficients, stance, speed, frequency)
+    return walk_cycle(figure, WalkCurves.symmetric(coefficients, stance), speed, frequency)
 
 
 def walk_coefficients(
     model: GaitModel, person: Person, manner: Floats, leg_length: float, speed: float, step_frequency: float
 ) -> tuple[Floats, float]:
-    """Fourier coefficients (S, C) and stance share of a person at a speed (m/s) and step frequency (steps/min).
+    """Fourier coefficients (S, C) and drawn stance share of a person at a speed (m/s) and step frequency (steps/min).
 
     Legs follow the true step. Trunk and arms follow the step relative to the person's own: at their captured walk
     ratio they move as the average person does at the average walk ratio (step length = sqrt(60 v WR), so the step
@@ -186,7 +193,7 @@ def walk_coefficients(
     coefficients = model.coefficients(Step.of(speed, step_frequency * own, leg_length), sex, manner)
     legs = [SIGNALS.index(name) for name in LEG_SIGNALS]
     coefficients[legs] = model.coefficients(step, sex, manner)[legs]
-    return coefficients, model.stance_share(step, sex)
+    return coefficients, model.stance_share(step, sex) - EARLIER_OFF
 
 
 def metronome_tree(frequencies: tuple[float, ...], speeds: tuple[float, ...]) -> Tree:

@@ -35,6 +35,7 @@ class WalkCycle:
     feet:      (2, N, 6) FOOT_CHANNELS of the left and the right foot, each on its own clock from its heel strike
     stance:    (2,) share of the cycle that each foot is on the ground
     ahead:     (2,) m, footprint ahead of the walker's mean position at its heel strike
+    left_strike: phase of the left heel strike; 0.5 where both steps last alike
     """
 
     speed: float  # m/s
@@ -44,6 +45,7 @@ class WalkCycle:
     feet: Floats
     stance: Floats
     ahead: Floats
+    left_strike: float = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +54,7 @@ class CycleTable:
 
     body:     (K, N + 1, 3 + 13 * 4) hips and rotations, quaternions of a joint all in one hemisphere
     feet:     (2, K, N + 1, 6)
-    contacts: (K, 4) stance of left and right, ahead of left and right
+    contacts: (K, 5) stance of left and right, ahead of left and right, phase of the left heel strike
     """
 
     body: Floats
@@ -72,7 +74,7 @@ class CycleTable:
         return cls(
             np.concatenate([body, body[:, :1]], axis=1),
             np.concatenate([feet, feet[:, :, :1]], axis=2),
-            np.array([[*cycle.stance, *cycle.ahead] for cycle in cycles]),
+            np.array([[*cycle.stance, *cycle.ahead, cycle.left_strike] for cycle in cycles]),
         )
 
     @property

@@ -67,6 +67,31 @@ class Step:
 
 
 @dataclass(frozen=True, eq=False)
+class WalkCurves:
+    """One walk as curves, before it is put on a skeleton. Left and right may differ.
+
+    sides:       (2, S, C) Fourier coefficients of the left and the right side, each from its own heel strike; the left
+                 as seen in a mirror, so that both are written like a right side. The midline's signals are in both.
+    stance:      (2,) share of the cycle that the left and the right foot is on the ground
+    left_strike: phase of the left heel strike; 0.5 where both steps last alike
+    """
+
+    sides: Floats
+    stance: Floats
+    left_strike: float = 0.5
+
+    @classmethod
+    def symmetric(cls, coefficients: Floats, stance: float) -> WalkCurves:
+        """A walk (S, C) whose left half is the right half's mirror image half a cycle later."""
+        return cls(np.stack([coefficients, coefficients]), np.array([stance, stance]))
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether both sides are exactly alike."""
+        return self.left_strike == 0.5 and self.stance[0] == self.stance[1] and np.array_equal(*self.sides)
+
+
+@dataclass(frozen=True, eq=False)
 class GaitModel:
     """Fitted coefficients. S = number of SIGNALS, C = COEFFICIENTS (mean, then cos and sin of each harmonic).
 

@@ -52,7 +52,7 @@ def drawn_pose(actor: Actor, speed: float, step_frequency: float, phase: float) 
     stride = 120.0 * speed / step_frequency
     feet = []
     for side in (0, 1):
-        own = phase if side == 1 else (phase + 0.5) % 1.0
+        own = phase if side == 1 else (phase - float(contacts[4])) % 1.0
         stance, ahead = float(contacts[side]), float(contacts[2 + side])
         clock = float(contact.clock(own, stance))
         channels = blend_foot(actor.table, side, cycles, weights, clock)

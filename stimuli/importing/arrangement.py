@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stimuli.actors import CYCLE_SPEEDS, METRONOME, Person, walk_coefficients
+from stimuli.actors import CYCLE_SPEEDS, EARLIER_OFF, METRONOME, Person, walk_coefficients
 from stimuli.gait_model import SIGNALS, load_gait_model
 from stimuli.importing.skeleton_bias import skeleton_bias
 from stimuli.importing.walks import CapturedWalk
@@ -24,11 +24,6 @@ PERSON_RATIO = 3.0
 
 BELIEVED = 0.4
 """Share of the difference from the average person's posture that is believed where it hangs on a rest pose's zero."""
-
-EARLIER_OFF = 0.02
-"""Share of the cycle by which the drawn shoe leaves the ground before the captured foot: its tip is stiffer than a
-forefoot, so that at the captured toe-off it would hold the leg back (set on four captures: the drawn knee is nearest
-to the captured one)."""
 
 TRUNK = ("hips_x", "spine_x", "chest_x", "neck_x", "head_x")
 LEGS = ("thigh", "shank", "foot_yaw", "knee_yaw")

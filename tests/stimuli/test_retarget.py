@@ -5,8 +5,9 @@ import pytest
 
 from stimuli.bodies import load_body
 from stimuli.contact import STANCE_END
-from stimuli.gait_model import Step, curves, load_gait_model
-from stimuli.retarget import PHASES, Figure, scaled, walk_cycle
+from stimuli.gait_model import Step, WalkCurves, curves, load_gait_model
+from stimuli.leg_paths import PHASES
+from stimuli.retarget import Figure, scaled, walk_cycle
 
 
 @pytest.fixture(params=["woman", "man"])
@@ -18,7 +19,9 @@ def made(figure, speed, step_frequency):
     model = load_gait_model()
     step = Step.of(speed, step_frequency, figure.leg_length)
     coefficients = model.coefficients(step)
-    return coefficients, walk_cycle(figure, coefficients, model.stance_share(step), speed, step_frequency)
+    return coefficients, walk_cycle(
+        figure, WalkCurves.symmetric(coefficients, model.stance_share(step)), speed, step_frequency
+    )
 
 
 def test_the_standing_foot_has_no_clearance_and_no_travel_of_its_own(figure):

@@ -1,0 +1,329 @@
+"""Where captured leg angles carry the hips, and where the swinging legs then carry the feet.
+
+Each leg is looked at on its own clock, phase 0 its heel strike, the left one as seen in a mirror, so that both are
+written like a right leg. The hips are where the standing legs put them over feet that roll on the ground, least
+squares over both legs in the first harmonics of the cycle. Knows one skeleton's leg and curves; no actor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from stimuli import contact
+from stimuli.blend import FOOT_CHANNELS
+from stimuli.contact import Sole
+from stimuli.legs import Leg, reach
+from stimuli.skeleton import Floats
+
+SAMPLES = 256
+PHASES = np.arange(SAMPLES) / SAMPLES
+SMOOTHING = 6  # samples each way
+
+HIPS_HARMONICS = 12
+"""Harmonics of the cycle in the hips' height and advance; of a walk whose sides are alike only the even ones."""
+
+STEADY = 0.3
+"""How much the odd harmonics of the advance are held to zero, in samples of a standing leg: left and right footprints
+and a forward sway once per cycle are told apart only while both feet are on the ground."""
+
+CLOSING = 0.15
+"""Share of swing in which a captured foot comes on to its footprint."""
+
+BUILT_REACH = 0.9996
+"""Largest hip-ankle distance over leg length in a cycle as built (knee bent 3.2 degrees); blending needs the rest."""
+
+CEILING_MARGIN = 0.0003
+"""m below the highest place that the standing leg reaches at which the hips are aimed where they would be above."""
+
+SWING_GAIN = (0.8, 1.35)
+"""How much less or more than captured the stance leg may swing to make a step of the wanted length."""
+
+PUSH_OFF = np.radians(12.0)
+"""Largest change of the captured foot pitch at push-off (two standard deviations between people, S&M tables)."""
+
+LEAST_CLEARANCE = 0.012
+"""m, clearance of the lowest point at mid swing (Winter 1992: 1.3 cm on average)."""
+
+LATE_SHARE = 0.2
+"""Share of it that is kept until the foot comes down, so that it never brushes the ground on its way."""
+
+
+@dataclass(frozen=True, eq=False)
+class FootPath:
+    """A foot over PHASES, as it would roll on the ground at the place of its footprint.
+
+    pitch: as drawn; yaw, knee_yaw: rad; side: m; ankle: (N, 3) m from the footprint's forward place
+    """
+
+    stance: float
+    pitch: Floats
+    yaw: Floats
+    knee_yaw: Floats
+    side: Floats
+    ankle: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class LegPath:
+    """A leg over PHASES of its own clock.
+
+    strike: phase of the cycle at its heel strike
+    hip:    (N, 3) m, hip joint less the height and advance of the hips
+    knee:   (N,) rad, captured flexion
+    vector: (N, 2) m, up and forward from hip to ankle
+    ahead:  m, footprint ahead of the walker's mean position at its heel strike
+    """
+
+    strike: float
+    hip: Floats
+    knee: Floats
+    vector: Floats
+    foot: FootPath
+    ahead: float = 0.0
+
+    @property
+    def phases(self) -> Floats:
+        """(N,) phases of the cycle."""
+        return PHASES + self.strike
+
+    @property
+    def standing(self) -> Floats:
+        """(N,) how much this leg tells of the hips: all from heel strike until the other leg takes over."""
+        return np.asarray(contact.smooth_step((self.foot.stance - 0.07 - PHASES) / 0.1))
+
+
+@dataclass(frozen=True, eq=False)
+class Hips:
+    """Height and advance (m) of the hips as Fourier coefficients of the cycle's `harmonics`."""
+
+    harmonics: Floats
+    height: Floats
+    advance: Floats
+
+    def at(self, phases: Floats) -> Floats:
+        """(N, 2) m, height and advance at phases of the cycle."""
+        return np.column_stack(
+            [_terms(phases, self.harmonics) @ self.height, _terms(phases, self.harmonics)[:, 1:] @ self.advance]
+        )
+
+
+def leg_path(leg: Leg, sole: Sole, scale: float, side: dict[str, Floats], hips: Floats, stance: float) -> LegPath:
+    """A leg of a walk before anything is fitted, at the right side's heel strike.
+
+    side: the side's signals over PHASES; hips: (N, 3, 3) world rotation of the hips; scale: leg length m
+    """
+    yaw = _still_in_stance(side["foot_yaw"], stance)
+    place = scale * _still_in_stance(side["foot_shift"], stance)
+    foot = _pitched(sole, side["foot"], yaw, side["knee_yaw"], place, stance)
+    hip = hips @ leg.hip
+    hip[:, 0] += scale * side["hips_shift"]
+    vector = _leg_vector(leg, side["thigh"], side["shank"], foot.ankle[:, 0] - hip[:, 0])
+    return LegPath(0.0, hip, side["thigh"] - side["shank"], vector, foot)
+
+
+def carried_hips(leg: Leg, sole: Sole, paths: Sequence[LegPath], stride: float) -> tuple[Hips, list[LegPath]]:
+    """The hips that fit the standing legs best, and the legs swung and pushed off to fit the step of that length.
+
+    paths: both legs, or one where the other is its mirror image half a cycle later. stride: m.
+    """
+    harmonics = np.arange(1, HIPS_HARMONICS + 1) if len(paths) > 1 else np.arange(2, HIPS_HARMONICS + 1, 2)
+    advance, swung = _advance(paths, harmonics, stride)
+    height = _height(leg, swung, harmonics, advance, stride)
+    hips = Hips(harmonics, height, advance)
+    return hips, [replace(path, foot=_pushed_off(sole, path, hips.at(path.phases), stride)) for path in swung]
+
+
+def foot_channels(leg: Leg, path: LegPath, hips: Hips, stride: float) -> Floats:
+    """(N, 6) FOOT_CHANNELS of a leg on its own clock (contact.clock)."""
+    foot, own = path.foot, hips.at(path.phases)
+    swing = contact.swing_progress(PHASES)
+    phases = contact.phase_of(PHASES, foot.stance)
+
+    def on_clock(values: Floats) -> Floats:
+        return np.interp(phases, np.append(PHASES, 1.0), np.append(values, values[0]))
+
+    carried = own + path.hip[:, 1:] + path.vector  # ankle (up, forward) if the leg had its way
+    leave = contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / 0.18)
+    low, high = (contact.smooth_step((1.0 - swing) / before) for before in (0.18, 0.6))
+    least = LEAST_CLEARANCE * contact.smooth_step(swing / 0.07) * (LATE_SHARE * low + (1.0 - LATE_SHARE) * high)
+    clearance = least + leave * _soft_positive(on_clock(carried[:, 0] - foot.ankle[:, 1]) - least)
+
+    rolled = on_clock(foot.ankle[:, 2]) + path.ahead
+    course = contact.footprint_travel(phases, foot.stance)
+    travel = _swing_window(swing) * (on_clock((carried[:, 1] - foot.ankle[:, 2] - path.ahead) / stride) - course)
+    up = on_clock(foot.ankle[:, 1]) + clearance - on_clock(own[:, 0] + path.hip[:, 1])
+    sideways = on_clock(foot.ankle[:, 0] - path.hip[:, 0])
+    far = np.sqrt(np.maximum((BUILT_REACH * leg.length) ** 2 - up**2 - sideways**2, 0.0))
+    joint = on_clock(own[:, 1] + path.hip[:, 2])
+    places = [(joint + sign * far - rolled) / stride - course for sign in (-1.0, 1.0)]
+    travel = _smoothed(np.where(swing > 0.0, np.clip(travel, *places), 0.0)) * _swing_window(swing)
+    bounded = contact.smooth_step(swing / 0.1) * contact.smooth_step((1.0 - swing) / 0.08)
+    travel = travel + bounded * (np.clip(travel, *places) - travel)
+    channels = {
+        "pitch": on_clock(contact.wanted_pitch(foot.pitch)),
+        "clearance": clearance,
+        "travel": travel,
+        "side": on_clock(foot.side),
+        "yaw": on_clock(foot.yaw),
+        "knee_yaw": on_clock(foot.knee_yaw),
+    }
+    return np.column_stack([channels[name] for name in FOOT_CHANNELS])
+
+
+def _pitched(sole: Sole, drawn: Floats, yaw: Floats, knee_yaw: Floats, side: Floats, stance: float) -> FootPath:
+    """The foot that rolls with a drawn pitch (N,) rad."""
+    swing = contact.swing_progress(contact.clock(PHASES, stance))
+    forward, up = contact.planted(sole, drawn, contact.toe_bend(drawn, swing))
+    ankle = np.column_stack([side + np.sin(yaw) * forward, up, np.cos(yaw) * forward])
+    return FootPath(stance, drawn, yaw, knee_yaw, side, ankle)
+
+
+def _leg_vector(leg: Leg, thigh: Floats, shank: Floats, sideways: Floats) -> Floats:
+    """(N, 2) m up and forward from hip to ankle, for inclinations of its bones (rad).
+
+    The knee angle is kept, so the part of the leg's length that leads sideways is taken off.
+    """
+    vector = np.column_stack(
+        [
+            -leg.thigh * np.cos(thigh) - leg.shank * np.cos(shank),
+            leg.thigh * np.sin(thigh) + leg.shank * np.sin(shank),
+        ]
+    )
+    length = reach(leg, thigh - shank)
+    return vector * (np.sqrt(length**2 - sideways**2) / np.linalg.norm(vector, axis=1))[:, None]
+
+
+def _advance(paths: Sequence[LegPath], harmonics: Floats, stride: float) -> tuple[Floats, list[LegPath]]:
+    """Coefficients (2 H,) m of the hips' advance, and the legs with their footprints, swung to fit the step.
+
+    Least squares over the standing legs: the hips are where the leg puts them over its footprint. A step longer than
+    the captured angles make is made by swinging both legs further in proportion, which keeps the knees.
+    """
+    own = np.eye(len(paths))
+    terms = [np.column_stack([_terms(path.phases, harmonics)[:, 1:], np.tile(-own[n], (SAMPLES, 1))])
+             for n, path in enumerate(paths)]  # fmt: skip
+    wanted = [path.foot.ankle[:, 2] - stride * PHASES - path.hip[:, 2] for path in paths]
+    forward = [path.vector[:, 1] for path in paths]
+    weights = np.concatenate([path.standing for path in paths])
+    hold = np.append(np.repeat(np.where(harmonics % 2 == 1, STEADY, 0.0), 2), np.zeros(len(paths)))
+    design = np.column_stack([np.concatenate(terms), np.concatenate(forward)])
+    solution = _least_squares(design, np.concatenate(wanted), weights, np.append(hold, 0.0))
+    gain = float(np.clip(solution[-1], *SWING_GAIN))
+    left = np.concatenate(wanted) - gain * np.concatenate(forward)
+    solution = _least_squares(design[:, :-1], left, weights, hold)
+    advance, ahead = solution[: 2 * len(harmonics)], solution[2 * len(harmonics) :]
+    swung = [
+        replace(path, vector=_swung(path.vector, gain), ahead=float(place))
+        for path, place in zip(paths, ahead, strict=True)
+    ]
+    return advance, swung
+
+
+def _swung(vector: Floats, gain: float) -> Floats:
+    """A leg's vector (N, 2) turned so that it reaches `gain` times as far forward, at its length."""
+    length = np.linalg.norm(vector, axis=1)
+    forward = np.clip(gain * vector[:, 1], -0.95 * length, 0.95 * length)
+    return np.column_stack([-np.sqrt(length**2 - forward**2), forward])
+
+
+def _height(leg: Leg, paths: Sequence[LegPath], harmonics: Floats, advance: Floats, stride: float) -> Floats:
+    """Coefficients (1 + 2 H,) m of the hips' height: least squares over the standing legs, lowered to their reach.
+
+    The straighter the knee, the more a millimetre of height bends it, and the more it counts.
+    """
+    terms = np.concatenate([_terms(path.phases, harmonics) for path in paths])
+    wanted, ceiling, weight, standing = [], [], [], []
+    for path in paths:
+        foot = path.foot
+        behind = path.ahead - stride * PHASES - _terms(path.phases, harmonics)[:, 1:] @ advance
+        room = (
+            (BUILT_REACH * leg.length) ** 2
+            - (foot.ankle[:, 0] - path.hip[:, 0]) ** 2
+            - (behind + foot.ankle[:, 2] - path.hip[:, 2]) ** 2
+        )
+        wanted.append(foot.ankle[:, 1] - path.vector[:, 0] - path.hip[:, 1])
+        ceiling.append(foot.ankle[:, 1] + np.sqrt(np.maximum(room, 1e-4)) - path.hip[:, 1])
+        weight.append(path.standing / (np.maximum(path.knee, 0.0) + 0.05) ** 2 * np.where(PHASES < 0.1, 2.0, 1.0))
+        standing.append(foot.stance - 0.17 > PHASES)
+    return _below(terms, *(np.concatenate(part) for part in (wanted, ceiling, weight, standing)))
+
+
+def _below(terms: Floats, wanted: Floats, ceiling: Floats, weight: Floats, standing: Floats) -> Floats:
+    """Coefficients of the weighted least squares curve that stays below a ceiling where the leg is `standing`."""
+    force = np.zeros(len(terms))
+    coefficients = np.zeros(terms.shape[1])
+    for _ in range(12):
+        total = weight + force
+        target = (weight * wanted + force * (ceiling - CEILING_MARGIN)) / np.maximum(total, 1e-9)
+        coefficients = _least_squares(terms, target, total, np.zeros(terms.shape[1]))
+        over = standing & (terms @ coefficients > ceiling)
+        if not over.any():
+            break
+        force = force + 4.0 * weight.max() * over
+    coefficients[0] -= max(0.0, float(np.max((terms @ coefficients - ceiling)[standing])))
+    return coefficients
+
+
+def _pushed_off(sole: Sole, path: LegPath, hips: Floats, stride: float) -> FootPath:
+    """The foot with its heel rise at push-off changed, by PUSH_OFF at most, so that the knee stays as captured.
+
+    In double support the hips go where the leading leg carries them; what is left over for the trailing leg is
+    made by its heel, which is what a trailing foot is for. hips: (N, 2) m, height and advance on this leg's clock.
+    """
+    foot = path.foot
+    length = np.linalg.norm(path.vector, axis=1)
+    hip_up = (hips[:, 0] + path.hip[:, 1])[:, None]
+    behind = (path.ahead - stride * PHASES - hips[:, 1] - path.hip[:, 2])[:, None]
+    changes = np.linspace(-PUSH_OFF, PUSH_OFF, 41)
+    pitches = foot.pitch[:, None] + changes
+    forward, up = contact.planted(sole, pitches, contact.toe_bend(pitches, 0.0))
+    reached = np.sqrt((up - hip_up) ** 2 + (behind + np.cos(foot.yaw)[:, None] * forward) ** 2)
+    best = changes[np.argmin((reached - length[:, None]) ** 2 + (0.02 * changes) ** 2, axis=1)]
+    late = contact.smooth_step((PHASES - 0.36) / 0.1) * contact.smooth_step((foot.stance + 0.1 - PHASES) / 0.1)
+    end = int(np.searchsorted(PHASES, foot.stance - 0.01))
+    held = np.where(PHASES[end] > PHASES, best, best[end])
+    return _pitched(sole, foot.pitch + late * _smoothed(held), foot.yaw, foot.knee_yaw, foot.side, foot.stance)
+
+
+def _terms(phases: Floats, harmonics: Floats) -> Floats:
+    """(N, 1 + 2 H): 1, cosines and sines of these harmonics of the cycle, in pairs."""
+    angles = 2.0 * np.pi * np.outer(phases, harmonics)
+    terms = np.empty((len(phases), 1 + 2 * len(harmonics)))
+    terms[:, 0] = 1.0
+    terms[:, 1::2] = np.cos(angles)
+    terms[:, 2::2] = np.sin(angles)
+    return terms
+
+
+def _least_squares(design: Floats, wanted: Floats, weights: Floats, hold: Floats) -> Floats:
+    """(K,) weighted least squares with a ridge `hold` (K,), by the normal equations: few columns, many rows."""
+    weighted = design * weights[:, None]
+    return np.asarray(np.linalg.solve(weighted.T @ design + np.diag(hold + 1e-9), weighted.T @ wanted))
+
+
+def _still_in_stance(values: Floats, stance: float) -> Floats:
+    """A curve (N,) made constant in stance (its mean over the flat foot) and itself in mid swing."""
+    still = float(np.mean(values[(PHASES > 0.1) & (PHASES < 0.4)]))
+    return still + (values - still) * _swing_window(contact.swing_progress(contact.clock(PHASES, stance)))
+
+
+def _swing_window(progress: Floats) -> Floats:
+    """0 in stance, 1 in mid swing, without a jump in velocity or acceleration."""
+    return np.asarray(
+        contact.smooth_step((progress - 0.01) / 0.1) * contact.smooth_step((contact.ARRIVAL - progress) / CLOSING)
+    )
+
+
+def _smoothed(values: Floats) -> Floats:
+    """A periodic curve (N,) averaged over some 2 per cent of the cycle, which takes corners off."""
+    kernel = np.hanning(2 * SMOOTHING + 1)
+    padded = np.concatenate([values[-SMOOTHING:], values, values[:SMOOTHING]])
+    return np.convolve(padded, kernel / kernel.sum(), mode="valid")
+
+
+def _soft_positive(values: Floats, width: float = 0.002) -> Floats:
+    """values where well above 0, 0 well below, smooth between (m)."""
+    return np.asarray(width * np.logaddexp(0.0, values / width))
