@@ -11,12 +11,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stimuli import contact
 from stimuli.blend import FOOT_CHANNELS
 from stimuli.contact import Sole
 from stimuli.legs import Leg, reach
 from stimuli.skeleton import Floats
+
+Bools = NDArray[np.bool_]
 
 SAMPLES = 256
 PHASES = np.arange(SAMPLES) / SAMPLES
@@ -129,7 +132,8 @@ def carried_hips(leg: Leg, sole: Sole, paths: Sequence[LegPath], stride: float) 
 
     paths: both legs, or one where the other is its mirror image half a cycle later. stride: m.
     """
-    harmonics = np.arange(1, HIPS_HARMONICS + 1) if len(paths) > 1 else np.arange(2, HIPS_HARMONICS + 1, 2)
+    step = 1 if len(paths) > 1 else 2
+    harmonics = np.arange(step, HIPS_HARMONICS + 1, step, dtype=float)
     advance, swung = _advance(paths, harmonics, stride)
     height = _height(leg, swung, harmonics, advance, stride)
     hips = Hips(harmonics, height, advance)
@@ -248,13 +252,14 @@ def _height(leg: Leg, paths: Sequence[LegPath], harmonics: Floats, advance: Floa
         ceiling.append(foot.ankle[:, 1] + np.sqrt(np.maximum(room, 1e-4)) - path.hip[:, 1])
         weight.append(path.standing / (np.maximum(path.knee, 0.0) + 0.05) ** 2 * np.where(PHASES < 0.1, 2.0, 1.0))
         standing.append(foot.stance - 0.17 > PHASES)
-    return _below(terms, *(np.concatenate(part) for part in (wanted, ceiling, weight, standing)))
+    parts = [np.asarray(np.concatenate(part)) for part in (wanted, ceiling, weight)]
+    return _below(terms, parts[0], parts[1], parts[2], np.concatenate(standing))
 
 
-def _below(terms: Floats, wanted: Floats, ceiling: Floats, weight: Floats, standing: Floats) -> Floats:
+def _below(terms: Floats, wanted: Floats, ceiling: Floats, weight: Floats, standing: Bools) -> Floats:
     """Coefficients of the weighted least squares curve that stays below a ceiling where the leg is `standing`."""
-    force = np.zeros(len(terms))
-    coefficients = np.zeros(terms.shape[1])
+    force: Floats = np.zeros(len(terms))
+    coefficients: Floats = np.zeros(terms.shape[1])
     for _ in range(12):
         total = weight + force
         target = (weight * wanted + force * (ceiling - CEILING_MARGIN)) / np.maximum(total, 1e-9)

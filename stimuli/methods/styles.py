@@ -20,7 +20,7 @@ import numpy as np
 from stimuli.actor_library import imported_names, read_stored
 from stimuli.actors import CYCLE_SPEEDS, METRONOME, Actor, people, walk_coefficients
 from stimuli.blend import CycleTable
-from stimuli.gait_model import SIGNALS, load_gait_model
+from stimuli.gait_model import SIGNALS, WalkCurves, load_gait_model
 from stimuli.methods.errors import MethodError
 from stimuli.retarget import walk_cycle
 from stimuli.skeleton import Floats
@@ -41,9 +41,9 @@ class Style:
     step_frequency: float
 
     def applied(self, coefficients: Floats) -> Floats:
-        """(S, C) coefficients of a walk, in this style."""
+        """(..., S, C) coefficients of a walk, in this style."""
         changed = coefficients * self.gain[:, None]
-        changed[:, 0] = coefficients[:, 0] + self.shift
+        changed[..., 0] = coefficients[..., 0] + self.shift
         return changed
 
 
@@ -79,26 +79,26 @@ def styled(actor: Actor, name: str) -> Actor:
     """
     style = style_named(name)
     cycles = [
-        walk_cycle(actor.figure, style.applied(coefficients), stance, speed, frequency)
-        for coefficients, stance, speed, frequency in _ingredients(actor)
+        walk_cycle(actor.figure, replace(walk, sides=style.applied(walk.sides)), speed, frequency)
+        for walk, speed, frequency in _ingredients(actor)
     ]
     return replace(
         actor, table=CycleTable.of(cycles), provenance=f"{actor.provenance}; {name} style made from the model"
     )
 
 
-def _ingredients(actor: Actor) -> Iterator[tuple[Floats, float, float, float]]:
-    """Coefficients, stance share, speed and step frequency of every cycle of the actor's table, in its order."""
+def _ingredients(actor: Actor) -> Iterator[tuple[WalkCurves, float, float]]:
+    """The walk, speed and step frequency of every cycle of the actor's table, in its order."""
     if actor.name in imported_names():
         for cycle in read_stored(actor.name).cycles:
-            yield cycle.coefficients, cycle.stance, cycle.speed, cycle.step_frequency
+            yield WalkCurves.symmetric(cycle.coefficients, cycle.stance), cycle.speed, cycle.step_frequency
         return
     person, model = people()[actor.name], load_gait_model()
     manner = model.manner(dict(person.manner))
     for frequency in METRONOME:
         for speed in CYCLE_SPEEDS:
             coefficients, stance = walk_coefficients(model, person, manner, actor.figure.leg_length, speed, frequency)
-            yield coefficients, stance, speed, frequency
+            yield WalkCurves.symmetric(coefficients, stance), speed, frequency
 
 
 def _signals(pattern: str) -> list[int]:
