@@ -11,6 +11,7 @@ from analysis.assumption_checks import quantiles
 from analysis.columns import labels
 from analysis.drawing import DrawnFigure
 from analysis.errors import AnalysisError
+from analysis.exclusions import matching
 from analysis.figure_checks import qq_plots, residual_quantiles
 from analysis.results import PlannedResults
 
@@ -24,8 +25,10 @@ def check_quantiles(results: PlannedResults) -> dict[str, dict[str, pd.DataFrame
     if means is not None:
         _keep(found, "anova", {"": lambda: residual_quantiles(means)})
     for factor in dict.fromkeys(results.ttests["factor"]) if len(results.ttests) else ():
-        column = labels(results.used, factor, results.plan.levels[factor])
-        persons = results.used.assign(_level=np.array(column.levels)[column.codes])
+        where = next((test.where for test in results.plan.t_tests if test.each == factor), None)
+        used = results.used if where is None else results.used[matching(results.used, where)]
+        column = labels(used, factor, results.plan.levels[factor])
+        persons = used.assign(_level=np.array(column.levels)[column.codes])
         person = persons.groupby(["_level", "participant"])[results.plan.measure].mean()
         _keep(found, f"t {factor}", {level: _quantiles_of(person.loc[level]) for level in column.levels})
     for test in results.further:

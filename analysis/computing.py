@@ -14,6 +14,7 @@ from analysis.cells import CellMeans, cell_means
 from analysis.columns import numeric_label
 from analysis.comparisons import pairwise_of
 from analysis.errors import AnalysisError, AnalysisWarning, listed
+from analysis.exclusions import matching
 from analysis.further_tests import planned_tests
 from analysis.intervals import ordinary
 from analysis.journal import RecordedStudy
@@ -164,7 +165,8 @@ def _t_tests(used: pd.DataFrame, plan: AnalysisPlan, said: list[str]) -> pd.Data
 
 
 def _one_t(used: pd.DataFrame, plan: AnalysisPlan, test: TTestPlan) -> pd.DataFrame:
+    chosen = used if test.where is None else used[matching(used, test.where)]
     return t_tests(
-        used, plan.measure, "participant", each=test.each, against=dict(test.against),
+        chosen, plan.measure, "participant", each=test.each, against=dict(test.against),
         levels={test.each: plan.levels[test.each]},
     )  # fmt: skip

@@ -89,6 +89,19 @@ def canvas(width: float = 6.4, height: float = 4.2) -> tuple[Any, Any]:
     return figure, figure.add_subplot()
 
 
+def panels(count: int, width: float, height: float) -> tuple[Any, list[Any]]:
+    """A figure of panels side by side with one y axis; width: inches of each."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(max(width * count, 3.4), height), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(1, count, sharey=True, squeeze=False)[0]
+    axes[0].yaxis.get_major_formatter().set_useOffset(False)
+    axes[0].yaxis.get_major_formatter().set_scientific(False)
+    return figure, list(axes)
+
+
 def beeswarm(values: np.ndarray, width: float) -> np.ndarray:
     """Sideways offsets that keep equal values apart, the same every time: by rank, golden-ratio spaced."""
     order = np.argsort(np.argsort(values, kind="stable"), kind="stable")

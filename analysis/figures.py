@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pandas as pd
 
 from analysis.cells import CellMeans
 from analysis.drawing import COLOURS, REFERENCE, DrawnFigure, averaged, beeswarm, canvas, finish, saved, settings
@@ -11,35 +10,50 @@ from analysis.errors import AnalysisError
 from analysis.figure_checks import order_figure, qq_figure
 from analysis.figure_interaction import interaction
 from analysis.figure_raincloud import raincloud
+from analysis.figure_regression import regression_figure
+from analysis.figure_t_tests import t_tests_figure
 from analysis.intervals import ordinary, within_participant
 from analysis.plan import AnalysisPlan
 from analysis.plan_parts import FigurePlan
+from analysis.results import PlannedResults
 
-KINDS = ("means", "interaction", "raincloud", "qq", "order")
+KINDS = ("means", "interaction", "raincloud", "qq", "order", "t_tests", "regression")
 
 
-def draw(figure: FigurePlan, means: CellMeans, plan: AnalysisPlan, trials: pd.DataFrame) -> DrawnFigure:
-    """The figure that the plan asks for; trials: those that were used.
+def draw(figure: FigurePlan, results: PlannedResults) -> DrawnFigure:
+    """The figure that the plan asks for.
 
-    Raises AnalysisError for a kind or a factor there is not.
+    Raises AnalysisError for a kind or a factor there is not, or when the test it shows was not run.
     """
     if figure.kind not in KINDS:
         raise AnalysisError(f"There is no figure of kind {figure.kind!r}; the kinds are {', '.join(KINDS)}.")
+    with settings():
+        if figure.kind == "t_tests":
+            return t_tests_figure(figure, results)
+        if figure.kind == "regression":
+            return regression_figure(figure, results)
+        return _of_means(figure, results)
+
+
+def _of_means(figure: FigurePlan, results: PlannedResults) -> DrawnFigure:
+    """A figure of the cell means that the analysis of variance rests on."""
+    means, plan = results.means, results.plan
+    if means is None:
+        raise AnalysisError("there is no analysis of variance whose means it shows.")
     for name in (figure.x, figure.lines if figure.kind == "interaction" else None):
         if name is not None and name not in means.factors:
             raise AnalysisError(f"The figure names {name!r}, which is no factor of the analysis of variance.")
-    with settings():
-        if figure.kind == "qq":
-            return qq_figure(means, plan)
-        if figure.kind == "order":
-            return order_figure(means, plan, trials)
-        if figure.x is None:
-            raise AnalysisError(f"A figure of kind {figure.kind} needs x, the factor on the x axis.")
-        if figure.kind == "raincloud":
-            return raincloud(figure.x, means, plan)
-        if figure.kind == "interaction" and figure.lines is not None:
-            return interaction(figure.x, figure.lines, means, plan)
-        return _means(figure.x, figure.reference, means, plan)
+    if figure.kind == "qq":
+        return qq_figure(means, plan)
+    if figure.kind == "order":
+        return order_figure(means, plan, results.used)
+    if figure.x is None:
+        raise AnalysisError(f"A figure of kind {figure.kind} needs x, the factor on the x axis.")
+    if figure.kind == "raincloud":
+        return raincloud(figure.x, means, plan)
+    if figure.kind == "interaction" and figure.lines is not None:
+        return interaction(figure.x, figure.lines, means, plan)
+    return _means(figure.x, figure.reference, means, plan)
 
 
 def _means(x: str, reference: str | None, means: CellMeans, plan: AnalysisPlan) -> DrawnFigure:

@@ -13,6 +13,7 @@ from analysis.plan_parts import (
     EquivalencePlan,
     Exclusion,
     FigurePlan,
+    GroupsPlan,
     MixedModelPlan,
     RankTransformPlan,
     RegressionPlan,
@@ -51,6 +52,7 @@ class AnalysisPlan:
     regression: RegressionPlan | None = None
     rank_transform: RankTransformPlan | None = None
     mixed_model: MixedModelPlan | None = None
+    groups: Mapping[str, GroupsPlan] = field(default_factory=dict)  # factors made of groups of another's levels
     also: tuple[AnalysisPlan, ...] = field(default=())  # of further measures
 
 
@@ -73,7 +75,7 @@ def plan_of(study: Mapping[str, Any], where: str = "study file") -> AnalysisPlan
     analysis = study.get("analysis")
     if not isinstance(analysis, Mapping):
         raise AnalysisError(f"{where}: the study has no `analysis:` section, so there is no analysis to run.")
-    shared = {"exclusions": analysis.get("exclusions") or ()}
+    shared = {"exclusions": analysis.get("exclusions") or (), "groups": analysis.get("groups") or {}}
     also = tuple(_one_plan(study, {**further, **shared}, (), where) for further in analysis.get("also") or ())
     plan = _one_plan(study, analysis, also, where)
     names = [plan.measure, *(further.measure for further in also)]
@@ -94,6 +96,8 @@ def _one_plan(
     post_hoc = analysis.get("post_hoc") if "post_hoc" in analysis else {}
     questions = _questions(participants.get("questions"))
     heights = analysis.get("heights")
+    groups = {str(name): _groups(part) for name, part in (analysis.get("groups") or {}).items()}
+    made = {name: list(part.levels) for name, part in groups.items()}
     plan = AnalysisPlan(
         study=str(study.get("study", "")),
         title=str(study.get("title", study.get("study", "Study"))),
@@ -103,16 +107,21 @@ def _one_plan(
         unit=str(analysis.get("unit", "")),
         within=tuple(anova.get("within") or ()),
         between=tuple(anova.get("between") or ()),
-        levels={name: level_names(levels) for name, levels in {**factors, **between}.items()},
+        levels={name: level_names(levels) for name, levels in {**factors, **made, **between}.items()},
         adjust=None if post_hoc is None else str(post_hoc.get("adjust", "tukey")),
         model=str((post_hoc or {}).get("model", "multivariate")),
         t_tests=tuple(
-            TTestPlan(str(test["each"]), _by_level(test["against"]), str(test.get("label", "reference value")))
+            TTestPlan(
+                str(test["each"]),
+                _by_level(test["against"]),
+                str(test.get("label", "reference value")),
+                test.get("where"),
+            )
             for test in analysis.get("t_tests") or ()
         ),
         normality=analysis.get("normality", "shapiro_wilk") is not None,
         figures=tuple(
-            FigurePlan(str(f["kind"]), f.get("x"), f.get("lines"), f.get("reference"))
+            FigurePlan(str(f["kind"]), f.get("x"), f.get("lines"), f.get("reference"), f.get("panels"))
             for f in analysis.get("figures") or ()
         ),
         exclusions=tuple(Exclusion(str(e["where"]), str(e["reason"])) for e in analysis.get("exclusions") or ()),
@@ -130,6 +139,7 @@ def _one_plan(
         regression=_regression(analysis.get("regression")),
         rank_transform=_rank_transform(analysis.get("aligned_rank_transform")),
         mixed_model=_mixed_model(analysis.get("mixed_model")),
+        groups=groups,
         also=also,
     )
     unknown = sorted({name for name in _factors_named(plan) if name is not None} - set(plan.levels))
@@ -144,7 +154,7 @@ def _one_plan(
 def _factors_named(plan: AnalysisPlan) -> Iterator[str | None]:
     yield from (*plan.within, *plan.between, *(test.each for test in plan.t_tests))
     for figure in plan.figures:
-        yield from (figure.x, figure.lines)
+        yield from (figure.x, figure.lines, figure.panels)
     for same in plan.equivalence:
         yield from (same.factor, same.by)
     if plan.regression is not None:
@@ -158,6 +168,11 @@ def _factors_named(plan: AnalysisPlan) -> Iterator[str | None]:
 def _by_level(values: Mapping[Any, Any]) -> dict[str, float]:
     """Values by the text of their level, as a study file maps them."""
     return {label(level): float(value) for level, value in values.items()}
+
+
+def _groups(part: Mapping[str, Any]) -> GroupsPlan:
+    members = {str(group): tuple(numeric_label(level) for level in levels) for group, levels in part["levels"].items()}
+    return GroupsPlan(str(part["of"]), members)
 
 
 def _regression(part: Mapping[str, Any] | None) -> RegressionPlan | None:

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class TTestPlan:
-    """A one-sample t test in each level of a factor, against a value of its own."""
+    """A one-sample t test in each level of a factor, against a value of its own; where: of these trials only."""
 
     each: str
     against: Mapping[str, float]
     label: str
+    where: str | None = None
 
 
 @dataclass(frozen=True)
@@ -50,12 +51,29 @@ class MixedModelPlan:
 
 @dataclass(frozen=True)
 class FigurePlan:
-    """kind: means, interaction, raincloud, qq or order; reference: label of t tests whose values are drawn too."""
+    """kind: means, interaction, raincloud, qq, order, t_tests or regression.
+
+    reference: label of t tests whose values are drawn too; panels: groups of levels, a panel or a colour each.
+    """
 
     kind: str
     x: str | None = None
     lines: str | None = None
     reference: str | None = None
+    panels: str | None = None
+
+
+@dataclass(frozen=True)
+class GroupsPlan:
+    """A factor made from another: its groups, each with levels of the other."""
+
+    of: str
+    levels: Mapping[str, tuple[str, ...]]
+
+    @property
+    def group_of(self) -> dict[str, str]:
+        """Level of the other factor -> its group."""
+        return {level: group for group, levels in self.levels.items() for level in levels}
 
 
 @dataclass(frozen=True)

@@ -122,11 +122,11 @@ def _tables(results: PlannedResults) -> dict[str, pd.DataFrame]:
 def _figures(results: PlannedResults) -> tuple[list[DrawnFigure], list[str]]:
     drawn: list[DrawnFigure] = []
     complaints: list[str] = []
-    if results.means is None:
-        return drawn, complaints
     for figure in results.plan.figures:
+        if results.means is None and figure.kind not in ("t_tests", "regression"):
+            continue  # why there are no means is a warning already
         try:
-            drawn.append(draw(figure, results.means, results.plan, results.used))
+            drawn.append(draw(figure, results))
         except AnalysisError as error:
             complaints.append(f"A figure was not drawn: {error}")
     return drawn, complaints

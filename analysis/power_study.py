@@ -15,7 +15,7 @@ import pandas as pd
 from analysis.errors import AnalysisError, listed
 from analysis.plan import plan_of
 from analysis.simulated_experiments import clipped_shares, experiment_model
-from analysis.simulation_power import as_dict, combine_power, power_by_simulation
+from analysis.simulation_power import as_dict, combine_power, power_by_simulation, simulated_t_tests
 from analysis.writing import write_bytes
 
 CLIPPING = 0.02  # share of trials at the edge of the range above which one is told
@@ -115,6 +115,11 @@ def power_notes(study: Mapping[str, Any] | str | Path) -> list[str]:
     shares = clipped_shares(model)
     high = shares[shares["share"] > CLIPPING].sort_values("share", ascending=False)
     notes = ["Post hoc tests, equivalence tests and exclusions are not simulated."]
+    left = [test.each for test in model.plan.t_tests if test not in simulated_t_tests(model.plan)]
+    if left:
+        notes.append(
+            f"The t tests of every {listed(left)} are not simulated: the analysis of variance has no cell of it."
+        )
     if len(high):
         found = [f"{names[int(r.actor)]} at {r.speed:g} m/s ({100 * r.share:.0f} %)" for r in high.itertuples()]
         notes.insert(

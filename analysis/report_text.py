@@ -52,7 +52,9 @@ def methods_paragraph(results: PlannedResults) -> str:
     words = _anova_methods(results) if plan.within or plan.between else []
     for test in plan.t_tests:
         words.append(
-            f"For each {test.each}, participants' mean {plan.label.lower()} was compared with the {test.label} in a "
+            f"For each {test.each}, participants' mean {plan.label.lower()}"
+            + (f" in trials with {test.where}" if test.where else "")
+            + f" was compared with the {test.label} in a "
             "two-sided one-sample t test; these p values are not corrected for their number."
         )
     for same in plan.equivalence:

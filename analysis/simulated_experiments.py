@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 
 from analysis.cells import CellMeans
+from analysis.columns import numeric_label
 from analysis.errors import AnalysisError
 from analysis.gait_measures import GRAVITY
 from analysis.plan import AnalysisPlan, plan_of
@@ -54,6 +55,8 @@ def experiment_model(study: Mapping[str, Any], participants: int | None = None) 
         raise AnalysisError("Say how many participants to simulate; the study file plans no number.")
     conditions = list(product(*(study["factors"][name] for name in plan.factors)))
     columns = {name: [condition[i] for condition in conditions] for i, name in enumerate(plan.factors)}
+    for name, made in plan.groups.items():
+        columns[name] = [made.group_of[numeric_label(level)] for level in columns[made.of]]
     stimulus, task = study.get("stimulus") or {}, study.get("task") or {}
     actors = _values(stimulus.get("actor", ""), columns, len(conditions))
     population = simulation["preferred_walk_ratio"]
@@ -154,7 +157,7 @@ def _weights(plan: AnalysisPlan, columns: Mapping[str, list[Any]], count: int) -
     """(trials, c) so that trials @ weights are the means of the within cells."""
     cell = np.zeros(count, dtype=np.intp)
     for name in plan.within:
-        levels = list(dict.fromkeys(map(str, columns[name])))
+        levels = list(plan.groups[name].levels) if name in plan.groups else list(dict.fromkeys(map(str, columns[name])))
         cell = cell * len(levels) + np.array([levels.index(str(value)) for value in columns[name]])
     cell = np.tile(cell, plan.repetitions)
     weights = (cell[:, None] == np.arange(cell.max() + 1)).astype(float)

@@ -16,6 +16,7 @@ from scipy import special, stats
 from analysis.errors import AnalysisError
 from analysis.many_anovas import many_anovas
 from analysis.plan import AnalysisPlan
+from analysis.plan_parts import TTestPlan
 from analysis.simulated_experiments import ExperimentModel, cell_means_of, experiment_model
 
 CHUNK = 250  # experiments at a time: about 10 MB
@@ -42,8 +43,8 @@ def power_by_simulation(
     Experiment k depends on the seed and k only, so any split gives the same counts.
 
     Returns one row per test with columns test ("anova", Greenhouse-Geisser, or "t"), name (effect, or
-    level), significant, experiments, power, ci_low, ci_high (95 %, Wilson). Post hoc tests and
-    exclusions are not simulated. Raises AnalysisError.
+    level), significant, experiments, power, ci_low, ci_high (95 %, Wilson). Post hoc tests,
+    exclusions and t tests of a factor outside the analysis of variance are not simulated. Raises AnalysisError.
     """
     part, parts = shard
     if not 1 <= part <= parts:
@@ -109,7 +110,12 @@ def _tests(plan: AnalysisPlan) -> list[tuple[str, str]]:
     from analysis.contrasts import subsets
 
     effects = [("anova", ":".join(effect)) for effect in subsets((*plan.within, *plan.between))[1:]]
-    return [*effects, *(("t", f"{t.each} {level}") for t in plan.t_tests for level in t.against)]
+    return [*effects, *(("t", f"{t.each} {level}") for t in simulated_t_tests(plan) for level in t.against)]
+
+
+def simulated_t_tests(plan: AnalysisPlan) -> list[TTestPlan]:
+    """The t tests that rest on cells of the analysis of variance; the others are not simulated."""
+    return [test for test in plan.t_tests if test.each in (*plan.within, *plan.between) and test.where is None]
 
 
 def _count(job: tuple[ExperimentModel, int, range, float]) -> np.ndarray:
@@ -117,7 +123,7 @@ def _count(job: tuple[ExperimentModel, int, range, float]) -> np.ndarray:
     model, seed, experiments, alpha = job
     values = cell_means_of(model, seed, experiments)
     counts = [int(np.sum(p < alpha)) for p in many_anovas(values, model.design).values()]
-    for test in model.plan.t_tests:
+    for test in simulated_t_tests(model.plan):
         for level, against in test.against.items():
             counts.append(int(np.sum(_t_p(values, model, test.each, level, against) < alpha)))
     return np.array(counts)

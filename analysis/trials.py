@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.columns import label
+from analysis.columns import label, numeric_label
 from analysis.errors import AnalysisError, listed
 from analysis.exclusions import matching
 from analysis.gait_measures import normalised_gait
@@ -18,13 +18,17 @@ COUNTS = ("response_time", "key_presses", "reversals", "late_frames")
 
 def trials_table(recorded: RecordedStudy, plan: AnalysisPlan) -> pd.DataFrame:
     """One row per trial with columns study, participant, run, the answers that are not free text, trial,
-    block, repetition, the factors, the response's values, response_time (s), key_presses, reversals,
-    late_frames, measured_* (from the walker as drawn) and excluded (the reason, or empty).
+    block, repetition, the factors, those made of groups of levels, the response's values, response_time (s),
+    key_presses, reversals, late_frames, measured_* (from the walker as drawn) and excluded (the reason, or empty).
     """
     rows = [_row(run, trial, plan) for run in recorded.runs for trial in run.trials]
     if not rows:
         raise AnalysisError("The recorded runs hold no trial (practice does not count).")
     table = pd.DataFrame(rows, columns=_columns(rows, plan, recorded))
+    for name, groups in plan.groups.items():
+        if groups.of in table:
+            place = table.columns.get_loc(plan.factors[-1]) + 1 if plan.factors[-1] in table else len(table.columns)
+            table.insert(place, name, table[groups.of].map(numeric_label).map(groups.group_of))
     for one in (plan, *plan.also):
         _add_derived(table, one)
         if one.measure not in table.columns:

@@ -6,11 +6,15 @@ import difflib
 import re
 from collections.abc import Iterable, Iterator
 
-from protocols.study import FurtherAnalysis, Study
+from protocols.study import FurtherAnalysis, Level, Study
 from protocols.study_file import Mistake, Place
 
 RESPONSE_COLUMNS = ("walk_ratio", "step_frequency", "step_length", "response_time")
 """Columns of a trial that an exclusion may name, besides the factors and the frame counts."""
+
+
+TABLE_COLUMNS = ("study", "participant", "run", "trial", "block", "repetition")
+"""Columns that every table of trials has."""
 
 
 def no_such(name: str, known: Iterable[str], what: str) -> str:
@@ -23,6 +27,7 @@ def no_such(name: str, known: Iterable[str], what: str) -> str:
 
 def analysis_mistakes(study: Study) -> Iterator[Mistake]:
     """Factors, levels and columns that the planned analysis, or one of those in `also`, names in vain."""
+    yield from _groups(study)
     measures: set[str] = set()
     top: Place = ("analysis",)
     for at, plan in [(top, study.analysis), *(((*top, "also", i), p) for i, p in enumerate(study.analysis.also))]:
@@ -36,19 +41,53 @@ def analysis_mistakes(study: Study) -> Iterator[Mistake]:
         yield from _figures(study, plan, at)
     columns = [
         *RESPONSE_COLUMNS,
-        *study.factors,
+        *within_factors(study),
         *study.participants.between,
         "late_frames",
         "key_presses",
         "reversals",
     ]
     for i, exclusion in enumerate(study.analysis.exclusions):
-        parts = re.fullmatch(r"\s*(\w+)\s*(<=|>=|==|!=|<|>)\s*(\S.*?)\s*", exclusion.where)
-        where: Place = ("analysis", "exclusions", i, "where")
-        if parts is None:
-            yield Mistake(where, f"{exclusion.where!r} is no condition; write one as `late_frames > 5`")
-        elif parts[1] not in columns:
-            yield Mistake(where, no_such(parts[1], columns, "column"))
+        yield from _condition(exclusion.where, ("analysis", "exclusions", i, "where"), columns)
+    for at, plan in [(top, study.analysis), *(((*top, "also", i), p) for i, p in enumerate(study.analysis.also))]:
+        for i, test in enumerate(plan.t_tests):
+            if test.where is not None:
+                yield from _condition(test.where, (*at, "t_tests", i, "where"), columns)
+
+
+def within_factors(study: Study) -> dict[str, list[Level]]:
+    """Within-participant factors and their levels, those made of groups of levels too."""
+    made: dict[str, list[Level]] = {name: [*groups.levels] for name, groups in study.analysis.groups.items()}
+    return {**study.factors, **made}
+
+
+def _condition(text: str, where: Place, columns: Iterable[str]) -> Iterator[Mistake]:
+    parts = re.fullmatch(r"\s*(\w+)\s*(<=|>=|==|!=|<|>)\s*(\S.*?)\s*", text)
+    if parts is None:
+        yield Mistake(where, f"{text!r} is no condition; write one as `late_frames > 5`")
+    elif parts[1] not in columns:
+        yield Mistake(where, no_such(parts[1], columns, "column"))
+
+
+def _groups(study: Study) -> Iterator[Mistake]:
+    taken = {*study.factors, *(q.id for q in study.participants.questions), *RESPONSE_COLUMNS, *TABLE_COLUMNS}
+    for name, groups in study.analysis.groups.items():
+        where: Place = ("analysis", "groups", name)
+        if name in taken:
+            yield Mistake(where, f"{name} is already the name of a factor, question or column", on_key=True)
+        if groups.of not in study.factors:
+            yield Mistake((*where, "of"), no_such(groups.of, study.factors, "within factor"))
+            continue
+        known = [str(level) for level in study.factors[groups.of]]
+        grouped = [(group, str(level)) for group, levels in groups.levels.items() for level in levels]
+        for group, level in grouped:
+            if level not in known:
+                yield Mistake((*where, "levels", group), no_such(level, known, f"level of {groups.of}"))
+        for level in known:
+            count = sum(level == member for _, member in grouped)
+            if count != 1:
+                often = "in no group" if count == 0 else "in more than one group"
+                yield Mistake((*where, "levels"), f"{level} is {often}; every level of {groups.of} is in one")
 
 
 def _covered(study: Study, where: Place, given: Iterable[str], factor: str, what: str) -> Iterator[Mistake]:
@@ -75,7 +114,8 @@ def _measure(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake
 
 
 def _factors_of_tests(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
-    within, between = list(study.factors), list(study.participants.between)
+    factors = within_factors(study)
+    within, between = list(factors), list(study.participants.between)
     named = [
         (("anova", "within"), plan.anova.within, within, "within factor"),
         (("anova", "between"), plan.anova.between, between, "between factor"),
@@ -99,7 +139,7 @@ def _factors_of_tests(study: Study, plan: FurtherAnalysis, at: Place) -> Iterato
         for i, name in enumerate(names):
             if name not in known:
                 yield Mistake((*at, *place, i), no_such(name, known, what))
-            elif name in study.factors and len(study.factors[name]) < 2:
+            elif name in factors and len(factors[name]) < 2:
                 yield Mistake((*at, *place, i), f"{name} has one level; a factor needs two")
             elif name in names[:i]:
                 yield Mistake((*at, *place, i), f"{name} stands twice; remove one")
@@ -107,10 +147,11 @@ def _factors_of_tests(study: Study, plan: FurtherAnalysis, at: Place) -> Iterato
 
 def _t_tests(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
     for i, test in enumerate(plan.t_tests):
-        if test.each not in study.factors:
-            yield Mistake((*at, "t_tests", i, "each"), no_such(test.each, study.factors, "factor"))
+        factors = within_factors(study)
+        if test.each not in factors:
+            yield Mistake((*at, "t_tests", i, "each"), no_such(test.each, factors, "factor"))
             continue
-        levels = [str(level) for level in study.factors[test.each]]
+        levels = [str(level) for level in factors[test.each]]
         without = [level for level in levels if level not in test.against]
         for level in test.against:
             # values for levels that are not shown do no harm, unless one of them may be misspelt
@@ -142,7 +183,8 @@ def _equivalence_and_regression(study: Study, plan: FurtherAnalysis, at: Place) 
 
 
 def _figures(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
-    factors, labels = [*study.factors, *study.participants.between], [test.label for test in plan.t_tests]
+    factors = [*within_factors(study), *study.participants.between]
+    labels = [test.label for test in plan.t_tests]
     for i, figure in enumerate(plan.figures):
         where: Place = (*at, "figures", i)
         for field, factor in (("x", figure.x), ("lines", figure.lines)):
@@ -150,6 +192,12 @@ def _figures(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake
                 yield Mistake((*where, field), no_such(factor, factors, "factor"))
         if figure.kind in ("means", "interaction", "raincloud") and figure.x is None:
             yield Mistake(where, f"a figure of kind {figure.kind} needs x: the factor on the x axis")
+        if figure.kind == "t_tests" and figure.reference is None:
+            yield Mistake(where, "a figure of t_tests needs reference: the label of the t-test it shows")
+        if figure.kind == "regression" and plan.regression is None:
+            yield Mistake(where, "a figure of the regression needs a regression in this analysis")
+        if figure.panels is not None and figure.panels not in study.analysis.groups:
+            yield Mistake((*where, "panels"), no_such(figure.panels, study.analysis.groups, "name under groups"))
         if figure.kind == "interaction" and figure.lines is None:
             yield Mistake(where, "an interaction needs lines: the factor drawn as lines")
         if figure.reference is not None and figure.reference not in labels:

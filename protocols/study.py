@@ -195,6 +195,7 @@ class TTest(Part):
     each: Name
     against: dict[str, Number] = Field(min_length=1, description="Level: value to test against.")
     label: Text = "reference value"
+    where: Text | None = Field(None, description="Only trials that meet a condition, as `character == matched`.")
 
 
 class Equivalence(Part):
@@ -234,12 +235,17 @@ class MixedModel(Part):
 class Figure(Part):
     """A figure of the report."""
 
-    kind: Literal["means", "interaction", "raincloud", "qq", "order"] = Field(
-        description="qq: residuals against a normal distribution; order: the measure over the session, for learning."
+    kind: Literal["means", "interaction", "raincloud", "qq", "order", "t_tests", "regression"] = Field(
+        description="qq: residuals against a normal distribution; order: the measure over the session, for learning; "
+        "t_tests: what was measured and what it was tested against, level by level; regression: the measure over "
+        "every predictor."
     )
-    x: Name | None = Field(None, description="Factor on the x axis; qq and order have none.")
+    x: Name | None = Field(None, description="Factor on the x axis; qq, order, t_tests and regression have none.")
     lines: Name | None = None
-    reference: Text | None = Field(None, description="Label of the t-test whose values are drawn as diamonds.")
+    reference: Text | None = Field(
+        None, description="Label of the t-test whose values are drawn as diamonds; the t-test of a t_tests figure."
+    )
+    panels: Name | None = Field(None, description="For t_tests and regression: groups, a panel or a colour each.")
 
 
 class Exclusion(Part):
@@ -247,6 +253,15 @@ class Exclusion(Part):
 
     where: Text = Field(description="A condition on one column, as `late_frames > 5`.")
     reason: Text
+
+
+class LevelGroups(Part):
+    """A factor made from another: its levels are groups of the other's levels, as women and men among actors."""
+
+    of: Name = Field(description="The within-participant factor whose levels are grouped.")
+    levels: dict[Name, Annotated[list[Level], Field(min_length=1)]] = Field(
+        min_length=2, description="Group: the levels in it; every level is in one group."
+    )
 
 
 class FurtherAnalysis(Part):
@@ -278,6 +293,9 @@ class Analysis(FurtherAnalysis):
     """The analysis planned before the data."""
 
     anova: Anova
+    groups: dict[Name, LevelGroups] = Field(
+        default_factory=dict, description="Further within-participant factors, made of groups of a factor's levels."
+    )
     exclusions: list[Exclusion] = Field(default_factory=list, description="For every measure alike.")
     also: list[FurtherAnalysis] = Field(
         default_factory=list, description="Further measures, each analysed on its own, in a folder of its own."
