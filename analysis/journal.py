@@ -71,7 +71,7 @@ def read_journal(path: Path, name: str = "") -> RecordedRun:
         raise AnalysisError(
             f"{name}: written in format {header.get('format')!r}; this version reads format 1. Update it."
         )
-    answers, trials, repeated, ended = {}, {}, [], ""
+    answers, trials, repeated, ended = dict(header.get("group") or {}), {}, [], ""
     for place, record in enumerate(records, start=1):
         kind = record.get("kind")
         try:

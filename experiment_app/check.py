@@ -8,10 +8,12 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from experiment_app.balance import balance, likely_seed, order_in_words
 from protocols.consistency import inconsistencies, referred_factors
-from protocols.design import conditions, make_trials, practice_trials
+from protocols.design import conditions, make_trials, practice_trials, tracks
+from protocols.order import AdaptiveOrder
 from protocols.plan import value_of
-from protocols.study import Study, Words
+from protocols.study import Level, Study, Words
 from protocols.study_file import Mistake, Place, StudyFile, read_study
 
 SMALLEST_TEXT = 20
@@ -58,6 +60,9 @@ def _names(study: Study, value: str, place: Place, what: str, known: Sequence[st
     if value.startswith("$"):
         factor = value[1:]
         named = [(level, ("factors", factor, i)) for i, level in enumerate(study.factors.get(factor, []))]
+        if factor in study.participants.assigned:
+            levels = study.participants.between.get(factor, [])
+            named = [(level, ("participants", "between", factor, i)) for i, level in enumerate(levels)]
         named += [
             (trial.levels[factor], ("practice", i, factor))
             for i, trial in enumerate(study.practice)
@@ -79,7 +84,7 @@ def _coverage(study: Study) -> Iterator[Mistake]:
     speed, actor = study.stimulus.speed, study.stimulus.actor
     factor = speed[1:] if isinstance(speed, str) else None
     speeds = list(enumerate(study.factors[factor])) if factor else [(0, speed)]
-    actors = study.factors[actor[1:]] if actor.startswith("$") else [actor]
+    actors = _levels_of(study, actor[1:]) if actor.startswith("$") else [actor]
     asked: list[tuple[Place, float, str]] = [
         (("factors", factor, i) if factor else ("stimulus", "speed"), float(value), str(name))
         for i, value in speeds
@@ -99,12 +104,17 @@ def _coverage(study: Study) -> Iterator[Mistake]:
             found.add(place)
 
 
+def _levels_of(study: Study, factor: str) -> Sequence[Level]:
+    """The levels of a factor, whether within participants or assigned to them."""
+    return study.factors.get(factor) or study.participants.between[factor]
+
+
 def expected_minutes(study: Study) -> float:
     """How long a session takes, in minutes: reading every page, answering, adjusting, intervals and breaks."""
     pages = study.pages
     shown = [pages.consent, *pages.instructions, pages.before_practice, pages.before_trials, pages.debrief]
     words = sum(len(page.text.split()) for page in shown if page is not None)
-    trials = len(conditions(study)) * study.repetitions + len(study.practice)
+    trials = len(make_trials(study, seed=1)) + len(study.practice)
     breaks = (trials // study.breaks.every) * 60.0 if study.breaks else 0.0
     adjusting = trials * (max(ADJUSTING, study.task.minimum_looking_time) + study.interval)
     return words / READING_SPEED + (len(study.participants.questions) * 8.0 + adjusting + breaks) / 60.0
@@ -113,18 +123,26 @@ def expected_minutes(study: Study) -> float:
 def summary(file: StudyFile) -> list[str]:
     """What `gaitlab check` prints about a study without mistakes, with a picture of the design's balance in text."""
     study = file.study
-    cells, trials = len(conditions(study)), len(conditions(study)) * study.repetitions
+    cells, trials = len(conditions(study)), len(make_trials(study, seed=1))
     levels = " x ".join(str(len(v)) for v in study.factors.values())
     lines = [
         f"{file.name}: {study.title}",
         f"  no mistakes; SHA-256 {file.hash[:16]}",
-        f"  {levels} levels = {cells} conditions, {_times(study.repetitions)} each = {trials} trials "
-        f"in {study.order.kind} order, after {len(study.practice)} training trials",
+        f"  {levels} levels = {cells} conditions, {_counted(study, trials)}, "
+        f"after {len(study.practice)} training trials",
+        f"  {order_in_words(study)}",
         f"  about {math.ceil(expected_minutes(study))} minutes; {study.participants.planned} participants planned",
         "",
         "Balance (one dot = one trial of participant 1, left to right in the order shown)",
     ]
-    return lines + _strip(study)
+    return [*lines, *_strip(study), "", *balance(study)]
+
+
+def _counted(study: Study, trials: int) -> str:
+    """How many trials there are, and why."""
+    if isinstance(study.order, AdaptiveOrder):
+        return f"{len(tracks(study))} tracks of {study.repetitions} trials = {trials} trials"
+    return f"{_times(study.repetitions)} each = {trials} trials"
 
 
 def text_notes(study: Study) -> list[str]:
@@ -221,11 +239,9 @@ def design_picture(file: StudyFile, path: Path) -> None:
     import matplotlib.pyplot as plt
     import numpy as np
 
-    from protocols.design import default_seed
-
     study = file.study
     people = min(study.participants.planned, 12)
-    orders = [make_trials(study, default_seed(study.study, f"P{i + 1:02d}", 1)) for i in range(people)]
+    orders = [make_trials(study, likely_seed(study, number), number) for number in range(1, people + 1)]
     figure, axes = plt.subplots(
         len(study.factors),
         2,

@@ -116,18 +116,46 @@ def check(
     study: StudyArgument,
     *,
     picture: Annotated[Path | None, Parameter(help="Also write the balance of the design as a picture (PNG).")] = None,
+    participant_number: Annotated[
+        int | None, Parameter(help="Also print what the participant with this number of arrival will see, as 7.")
+    ] = None,
+    seed: Annotated[int | None, Parameter(help="Seed of that participant's order; by default that of P07.")] = None,
 ) -> int:
     """Check a study file: every mistake with its line, the number of trials, how long it takes, the balance."""
+    from experiment_app.balance import what_participant_sees
     from experiment_app.check import checked_study, design_picture, summary, text_notes
 
+    if participant_number is not None and participant_number < 1:
+        raise UsageError(f"--participant-number {participant_number}: numbers of arrival begin at 1.")
     file = checked_study(study)
     for note in text_notes(file.study):
         problems.print(f"Note: {note}", style="yellow", markup=False)
     for line in summary(file):
         out.print(line, markup=False)
+    if participant_number is not None:
+        for line in ["", *what_participant_sees(file.study, participant_number, seed)]:
+            out.print(line, markup=False)
     if picture is not None:
         design_picture(file, picture)
         out.print(f"Picture of the balance: {picture}", markup=False)
+    return 0
+
+
+@app.command(name="drop-out")
+def drop_out_command(
+    folder: Annotated[Path, Parameter(help="The study's folder of data, as data/walk_ratio.")],
+    *,
+    participant: Annotated[str, Parameter(help="The ID of who will not come back.")],
+) -> int:
+    """Give back the place of a participant who will not come back; everything recorded stays.
+
+    The next new participant takes the place: its group, its row of the square, its keys.
+    """
+    from experiment_app.dropping_out import drop_out
+
+    run = drop_out(folder, participant)
+    place = run.header["participant_number"]
+    out.print(f"Participant {participant} has dropped out; place {place} is free again.", markup=False)
     return 0
 
 

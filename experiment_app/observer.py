@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from random import Random
 
 from protocols.adjustment import AdjustmentTrial
+from protocols.assignment import place_in_group
 from protocols.events import Clicked, Event, KeyDown, KeyUp, Typed
 from protocols.form import Form
 from protocols.plan import QuestionsStep, Step, TextStep, TrialStep, value_of
@@ -57,7 +58,7 @@ def draw_observer(study: Study, participant_number: int, seed: int) -> Observer:
         _preferences(study.simulation, rng),
         study.simulation.trial_noise,
         study.simulation.anchoring,
-        {q.id: _answer(study, q, participant_number, rng) for q in study.participants.questions},
+        _answers(study, participant_number, rng),
     )
 
 
@@ -70,10 +71,23 @@ def _preferences(simulation: Simulation, rng: Random) -> dict[str, float]:
     return preferred
 
 
-def _answer(study: Study, question: Question, number: int, rng: Random) -> str:
-    if question.kind == "choice":
+def _answers(study: Study, number: int, rng: Random) -> dict[str, str]:
+    """An answer to every question; those that are factors are filled in turn inside every assigned group."""
+    turn = place_in_group(study, number)
+    answers = {}
+    for question in study.participants.questions:
         levels = study.participants.between.get(question.id)
-        return levels[(number - 1) % len(levels)] if levels else next(iter(question.options))
+        if levels:
+            turn, place = divmod(turn, len(levels))
+            answers[question.id] = levels[place]
+        else:
+            answers[question.id] = _answer(question, rng)
+    return answers
+
+
+def _answer(question: Question, rng: Random) -> str:
+    if question.kind == "choice":
+        return next(iter(question.options))
     if question.kind == "number":
         return str(rng.randint(question.minimum, min(question.maximum, question.minimum + 30)))
     return "simulated"

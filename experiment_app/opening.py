@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -22,6 +22,7 @@ from experiment_app.run_folder import (
     run_numbers,
 )
 from protocols import resuming
+from protocols.assignment import group_of, groups
 from protocols.design import default_seed, make_trials, practice_trials
 from protocols.plan import Plan, keys_of, make_plan, value_of
 from protocols.record import Continued, Header
@@ -77,6 +78,7 @@ def open_new(
         )
     number = max(run_numbers(data, name, participant), default=0) + 1 if again else 1
     order = participant_number(data, name, participant)
+    group = group_of(study.study, order)
     run = new_run(data, name, participant, number)
     if seed is None:
         seed = default_seed(name, participant, number)
@@ -95,15 +97,16 @@ def open_new(
         started=_utc_now(),
         walkers=_provenance(study.study),
         pilot=pilot,
+        group=group,
     )
-    return OpenRun(run, make_plan(study.study, seed, order), create_journal(run, header), seed, order, False)
+    return OpenRun(run, make_plan(study.study, seed, order, group), create_journal(run, header), seed, order, False)
 
 
 def open_unfinished(run: Run, *, display: Mapping[str, Any]) -> OpenRun:
     """An unfinished run again, from its own copy of the study, at the first thing its policy has to be done."""
     header = run.header
     study = parse_study(f"{run.journal} (the study file it holds)", header["study_text"]).study
-    plan = make_plan(study, header["seed"], header["participant_number"])
+    plan = make_plan(study, header["seed"], header["participant_number"], header.get("group"))
     journal, run, torn = reopen_journal(run)
     journal.write([Continued(0.0, _utc_now(), torn, display, _versions(), run.interruption)])
     plan = remaining(plan, resuming.again(plan, progress(run)))
@@ -130,7 +133,8 @@ def _provenance(study: Study) -> dict[str, str]:
     """Actor to where the walk comes from, for every actor of the study and its training."""
     from stimuli.actors import load_actor
 
-    trials = [*make_trials(study, 0), *practice_trials(study)]
+    shown = [*make_trials(study, 0), *practice_trials(study)]
+    trials = [replace(trial, group=group) for group in groups(study) for trial in shown]
     actors = sorted({str(value_of(study.stimulus.actor, trial)) for trial in trials})
     return {actor: load_actor(actor).provenance for actor in actors}
 

@@ -15,6 +15,7 @@ from typing import IO, Any
 
 from experiment_app.crash_note import crash_reason
 from experiment_app.errors import UsageError
+from protocols.assignment import GIVEN_BACK, Arrival, place_of
 from protocols.record import DamagedLineError, decode_line
 from protocols.session import Progress
 
@@ -22,6 +23,9 @@ PARTICIPANT = re.compile(r"[A-Za-z0-9]{1,32}")
 """Participant IDs: letters and digits only, as the labels of BIDS."""
 
 JOURNAL = "journal.jsonl"
+
+END_BYTES = 4096
+"""Bytes at the end of a journal that hold its last line when that is an end."""
 
 WITHDRAWN = "withdrawn.jsonl"
 """Beside sourcedata: one line for every place given back, and nothing else of those who withdrew."""
@@ -49,9 +53,9 @@ class Run:
 
     @property
     def end(self) -> str:
-        """Why the run ended ("finished", "declined"), or "" while it can be continued."""
+        """Why the run ended ("finished", "declined", "dropped out"), or "" while it can be continued."""
         reasons = [line["reason"] for line in self.lines if line["kind"] == "end"]
-        final = [reason for reason in reasons if reason in ("finished", "declined", "withdrawn")]
+        final = [reason for reason in reasons if reason in ("finished", *GIVEN_BACK)]
         return final[0] if final else ""
 
     @property
@@ -114,14 +118,38 @@ def participant_runs(data: Path, study: str, participant: str) -> list[Run]:
 def participant_number(data: Path, study: str, participant: str) -> int:
     """The participant's place in the order of arrival, from 1; the same in every run of the participant.
 
-    A place that somebody who withdrew has given back is filled first, so that the design stays balanced.
+    A place that somebody who declined, withdrew or dropped out has given back is filled first, so that the design
+    stays balanced.
     """
-    known = {header["participant"]: int(header["participant_number"]) for header in first_headers(data, study)}
-    if participant in known:
-        return known[participant]
-    returned = places_given_back(study_folder(data, study))
-    free = sorted(set(returned) - set(known.values()))
-    return free[0] if free else max([*known.values(), *returned], default=0) + 1
+    return place_of(participant, arrivals(data, study), places_given_back(study_folder(data, study)))
+
+
+def arrivals(data: Path, study: str) -> list[Arrival]:
+    """Who has a place in the order of arrival, and how each participant's latest run ended."""
+    known = []
+    for person in sorted((study_folder(data, study) / "sourcedata").glob("sub-*")):
+        numbers = run_numbers(data, study, person.name.removeprefix("sub-"))
+        for latest in [person / f"run-{number}" / JOURNAL for number in reversed(numbers)]:
+            try:
+                with open(latest, encoding="utf-8") as file:
+                    header = decode_line(file.readline())
+            except (OSError, ValueError):
+                continue  # a run that never began
+            known.append(Arrival(header["participant"], int(header["participant_number"]), last_end(latest)))
+            break
+    return known
+
+
+def last_end(journal: Path) -> str:
+    """Why a run ended, from the last line of its journal alone; "" when that is no end."""
+    with open(journal, "rb") as file:
+        file.seek(max(file.seek(0, os.SEEK_END) - END_BYTES, 0))
+        tail = file.read().rstrip(b"\n").split(b"\n")[-1]
+    try:
+        line = decode_line(tail.decode("utf-8"))
+    except (DamagedLineError, UnicodeDecodeError):
+        return ""
+    return str(line["reason"]) if line["kind"] == "end" else ""
 
 
 def places_given_back(folder: Path) -> list[int]:
@@ -205,7 +233,7 @@ def progress(run: Run) -> Progress:
     left: set[str] = set()
     begun: dict[str, int] = {}
     consented = False
-    answers: list[tuple[int, dict[str, Any]]] = []
+    answers: dict[int, dict[str, Any]] = {}
     for line in run.lines:
         kind = line["kind"]
         if kind == "page":
@@ -219,9 +247,10 @@ def progress(run: Run) -> Progress:
             else:
                 left.add(step)
                 if not line["practice"]:
+                    answers.pop(line["number"], None)  # a trial done again counts as what was answered last
                     columns = {**line["factors"], **line["response"], "response_time": line["response_time"]}
-                    answers.append((line["number"], columns))
-    return Progress(frozenset(left), begun, consented, bool(run.end), tuple(answers))
+                    answers[line["number"]] = columns
+    return Progress(frozenset(left), begun, consented, bool(run.end), tuple(answers.items()))
 
 
 def lock(file: IO[bytes], path: Path) -> None:

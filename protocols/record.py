@@ -21,9 +21,11 @@ FORMAT = 1
 class Header:
     """The first line of a journal: what is needed to read, repeat and cite the run.
 
-    participant_number: order of arrival, from 1; keys: what lower, raise, confirm and break were for this participant.
+    participant_number: order of arrival, from 1, places given back first; keys: what lower, raise, confirm and
+    break were for this participant.
     walkers: actor to where the walk comes from: captured, modelled, or how much of each.
     pilot: a trial run of the study itself, whose data must never stand among real ones.
+    group: level of every between-participant factor that the program assigned.
     """
 
     kind = "header"
@@ -41,6 +43,7 @@ class Header:
     started: str
     walkers: Mapping[str, str] = field(default_factory=dict)
     pilot: bool = False
+    group: Mapping[str, str] = field(default_factory=dict)
     format: int = FORMAT
 
 

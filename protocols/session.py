@@ -403,6 +403,8 @@ def _answered(plan: Plan, progress: Progress) -> Tracks:
     track = {step.trial.number: step.trial.track for step in _trials(list(plan.steps)) if not step.trial.practice}
     tracks = plan.tracks
     for number, columns in progress.answers:
+        if f"trial-{number}" not in progress.left:
+            continue  # done again by the study's policy, so its first answer does not count
         tracks = after_response(plan.study, tracks, track.get(number, 0), columns)
     return tracks
 
