@@ -78,6 +78,17 @@ def test_the_yaml_of_the_study_file_page_is_accepted_in_a_study():
     assert texts <= file.study.words.model_fields_set, "the French example names every word"
 
 
+def test_the_orders_of_the_study_file_page_are_orders():
+    from pydantic import TypeAdapter
+    from ruamel.yaml import YAML
+
+    from protocols.order import Order
+
+    orders = [block for block in blocks(ROOT / "docs" / "study-file.md", "yaml") if block.startswith("order:")]
+    kinds = [TypeAdapter(Order).validate_python(YAML(typ="safe").load(block)["order"]).kind for block in orders]
+    assert kinds == ["balanced_latin_square", "random", "adaptive"]
+
+
 @pytest.mark.slow
 def test_the_demo_without_a_screen_ends_with_a_report_tables_a_picture_and_a_film(tmp_path, capfd):
     assert run(["demo", "--off-screen", "--folder", str(tmp_path / "demo")]) == 0
