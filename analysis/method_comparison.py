@@ -64,6 +64,7 @@ class Comparison:
     rebuilt: tuple[Rebuilt, ...] = ()
     films: tuple[Film, ...] = ()
     pca: tuple[tuple[str, int, float, tuple[float, ...]], ...] = ()  # person, components, reduction, shares
+    fourier: tuple[tuple[str, float], ...] = ()  # joint, mean share of its variance that two harmonics keep
     breaking: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
@@ -158,6 +159,9 @@ def _text(comparison: Comparison, methods: pd.DataFrame, errors: pd.DataFrame) -
             for who, count, factor, shares in comparison.pca
         ]  # fmt: skip
         lines += [_markdown(pd.DataFrame(rows)), "", *[f"- {line}" for line in comparison.breaking], ""]
+    if comparison.fourier:
+        kept = ", ".join(f"{joint} {100 * share:.0f} %" for joint, share in comparison.fourier)
+        lines += ["## Variance of each joint's rotation that two harmonics keep (Fourier)\n", f"{kept}.\n"]
     if len(errors):
         lines += [f"## Rebuilding of the poulaine: RMSE in mm ({comparison.whose})\n", _markdown(_means(errors)), ""]
     return [*lines, *[f"Note: {note}" for note in comparison.notes], ""]

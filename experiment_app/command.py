@@ -408,7 +408,7 @@ def compare_methods_command(
 
     if not actors:
         raise UsageError("name at least one actor, as gaitlab compare-methods F1.")
-    report = compare_methods(actors, out_folder, captures, _say)
+    report = compare_methods(actors, out_folder, captures, _say, _with_progress)
     for sentence in report.headlines:
         out.print(sentence, markup=False)
     for path in report.paths:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from stimuli.events import GaitError
 from stimuli.methods.actor_walks import actor_speeds, actor_walks
 from stimuli.methods.comparison import Compared, compared
 from stimuli.methods.delivery import delivered, world_pose
+from stimuli.methods.fourier import fourier_walk, variance_kept
 from stimuli.methods.making import MethodError, leg_length
 from stimuli.methods.pca import PcaWalk, pca_walk
 from stimuli.motion_files.errors import MotionFileError
@@ -41,28 +43,46 @@ class PersonsWalk:
     cycle: Cycle
 
 
+class Progress(Protocol):
+    """Shows how far a long piece of work is, with the time left."""
+
+    def __call__(self, items: Iterable[Any], count: int, what: str, /) -> Iterable[Any]:
+        """The items, as they are."""
+
+
+def unseen(items: Iterable[Any], count: int, what: str, /) -> Iterable[Any]:
+    """No progress shown."""
+    return items
+
+
 def compare_methods(
-    actors: Sequence[str], folder: Path, captures: Path | None, say: Callable[[str], None]
+    actors: Sequence[str],
+    folder: Path,
+    captures: Path | None,
+    say: Callable[[str], None],
+    progress: Progress = unseen,
 ) -> ComparisonReport:
     """Compares the methods on actors (names, or folders of one person's captures) and writes the report.
 
     Raises UsageError with a sentence for what cannot be compared.
     """
     try:
-        return _compared(actors, folder, captures, say)
+        return _compared(actors, folder, captures, say, progress)
     except (MethodError, GaitError, MotionFileError, ActorError) as error:
         raise UsageError(str(error)) from None
 
 
 def _compared(
-    actors: Sequence[str], folder: Path, captures: Path | None, say: Callable[[str], None]
+    actors: Sequence[str], folder: Path, captures: Path | None, say: Callable[[str], None], progress: Progress
 ) -> ComparisonReport:
     rows: list[Compared] = []
     notes: list[str] = []
     engines: list[tuple[str, PcaWalk]] = []
     own: list[PersonsWalk] = []
-    for name in actors:
+    kept: list[dict[str, float]] = []
+    for name in progress(actors, len(actors), "Comparing methods"):
         walks = walks_named(name, notes)
+        kept += [variance_kept(fourier_walk(cycle)) for cycle in walks]
         own += [PersonsWalk(name, cycle) for cycle in walks]
         made, problems = compared(Path(name).name, walks)
         rows += made
@@ -71,7 +91,7 @@ def _compared(
             engines.append((Path(name).name, pca_walk(walks)))
         except MethodError as error:
             notes.append(f"{name}: {error}.")
-    tested, whose = _rebuilding_walks(captures, own, notes, say)
+    tested, whose = _rebuilding_walks(captures, own, notes, say, progress)
     errors, unclear = rebuilding_errors(tested)
     comparison = Comparison(
         methods=tuple(_method_row(row) for row in rows),
@@ -81,6 +101,7 @@ def _compared(
         rebuilt=tuple(_six_ways(tested)),
         films=tuple(_film(row) for row in rows if row.person == rows[0].person),
         pca=tuple((name, len(e.components), e.reduction, tuple(map(float, e.variance))) for name, e in engines),
+        fourier=_mean_kept(kept),
         breaking=tuple(line for name, engine in engines for line in breaking_lines(name, engine)),
         notes=(*notes, *unclear),
     )
@@ -96,15 +117,14 @@ def walks_named(name: str, notes: list[str]) -> list[Cycle]:
     return list(actor_walks(actor, actor_speeds(actor)))
 
 
-def walks_in(folder: Path, notes: list[str]) -> list[PersonsWalk]:
+def walks_in(folder: Path, notes: list[str], progress: Progress = unseen) -> list[PersonsWalk]:
     """One cycle of every motion file that holds a walk; the person is the file's name up to its first number."""
     if not folder.exists():
         raise UsageError(f"{folder}: there is no such folder of captures.")
-    files = [folder] if folder.is_file() else sorted(folder.rglob("*"))
+    found = [folder] if folder.is_file() else sorted(folder.rglob("*"))
+    files = [path for path in found if path.suffix.lower() in ENDINGS and not path.stem.endswith("_ST")]
     walks, left_out = [], []
-    for path in files:
-        if path.suffix.lower() not in ENDINGS or path.stem.endswith("_ST"):
-            continue
+    for path in progress(files, len(files), f"Reading {folder.name}"):
         try:
             walks.append(PersonsWalk(_person(path.stem), extract_cycle(read_clip(path))))
         except (GaitError, MotionFileError) as error:
@@ -154,17 +174,28 @@ def breaking_lines(name: str, engine: PcaWalk) -> list[str]:
 
 
 def _rebuilding_walks(
-    captures: Path | None, own: list[PersonsWalk], notes: list[str], say: Callable[[str], None]
+    captures: Path | None,
+    own: list[PersonsWalk],
+    notes: list[str],
+    say: Callable[[str], None],
+    progress: Progress,
 ) -> tuple[list[PersonsWalk], str]:
     if captures is not None:
-        return walks_in(captures, notes), f"captures in {captures}"
+        return walks_in(captures, notes, progress), f"captures in {captures}"
     shared = Path("..") / "shared" / "mocap"
     if all((shared / part).is_dir() for part in SHARED):
         say(f"Reading the captures in {shared} (--captures names others)")
-        walks = [walk for part in SHARED for walk in walks_in(shared / part, notes)]
+        walks = [walk for part in SHARED for walk in walks_in(shared / part, notes, progress)]
         return walks, f"captures in {shared}: {', '.join(SHARED)}"
     notes.append("no captures were named or found; rebuilding was tested on the actors' own walks.")
     return own, "walks of the actors themselves"
+
+
+def _mean_kept(kept: Sequence[dict[str, float]]) -> tuple[tuple[str, float], ...]:
+    """Joint and mean share of its variance that two harmonics keep, the least kept first."""
+    joints = {joint for walk in kept for joint in walk}
+    means = {joint: float(np.mean([walk[joint] for walk in kept if joint in walk])) for joint in joints}
+    return tuple(sorted(means.items(), key=lambda item: (item[1], item[0])))
 
 
 def _person(stem: str) -> str:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from stimuli.cycle import Cycle
 from stimuli.methods.blend import blend_to_speed, nearest_two
-from stimuli.methods.delivery import Delivered, delivered, joint_rmse
+from stimuli.methods.delivery import LEGS, Delivered, delivered, joint_rmse
 from stimuli.methods.fourier import fourier_to_speed
 from stimuli.methods.making import MethodError
 from stimuli.methods.pca import pca_walk
@@ -80,7 +80,8 @@ def compared(person: str, walks: Sequence[Cycle], count: int = 3) -> tuple[list[
 
 
 def _measured(person: str, method: str, cycle: Cycle, captured: Cycle) -> Compared:
-    legs, body = joint_rmse(cycle, captured), joint_rmse(cycle, captured, captured.joints)
+    itself = cycle is captured
+    legs, body = (0.0 if itself else joint_rmse(cycle, captured, joints) for joints in (LEGS, captured.joints))
     return Compared(person, method, captured.gait.speed, cycle, captured, delivered(cycle), legs, body)
 
 

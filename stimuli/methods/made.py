@@ -55,7 +55,7 @@ class MadeWalk:
         return Pose(hips_at(self.cycle, at)[0] / self.size, rotations_at(self.cycle, at)[0])
 
     def at_gait(self, speed: float, step_frequency: float) -> Cycle:
-        """The cycle as it is shown when moved at a speed (m/s) and played at a step frequency (steps/min)."""
+        """The cycle as it is shown when moved at a speed (m/s) and played at a positive step frequency (steps/min)."""
         return replace(self.cycle, stride_length=120.0 * speed / step_frequency, stride_time=120.0 / step_frequency)
 
 

@@ -16,12 +16,16 @@ from stimuli.cycle import Cycle
 from stimuli.methods.fourier import exponential_signals, whole_turns
 from stimuli.methods.frequency_law import INMAN, FrequencyLaw, fitted_law
 from stimuli.methods.making import MethodError, check_same_skeleton, leg_length, made_by, resampled
-from stimuli.rotations import continuous, from_exponential
+from stimuli.rotations import continuous, from_exponential, mean_rotation
 from stimuli.skeleton import Floats
 
 FRAMES = 100
 KEPT = 0.80
 """Share of the variance that the components hold (section 4.1)."""
+
+LEAST = 2
+"""Components that are kept at least, the fewest of table 1: with few speeds one component can hold 80 % and do no more
+than tell standing from walking."""
 
 FASTEST = 10.0 / 3.6
 """m/s: the source's engine walks from 0 to 10 km/h."""
@@ -116,8 +120,9 @@ def pca_walk(
 ) -> PcaWalk:
     """The engine of one person, from cycles at three or more speeds.
 
-    standing: by default the rest pose with the legs straight; law: by default fitted to the cycles. kept: share of
-    the variance. Raises MethodError for too few cycles or speeds, or different skeletons.
+    standing: by default `standing_posture`; law: by default fitted to the cycles. kept: share of the variance that
+    the components hold, of which there are LEAST or more. Raises MethodError for too few cycles or speeds, or different
+    skeletons.
     """
     _check_cycles(cycles)
     legs = leg_length(cycles[0])
@@ -128,7 +133,7 @@ def pca_walk(
     mean = motions.mean(axis=0)
     _, sizes, rows = np.linalg.svd((motions - mean).reshape(len(motions), -1), full_matrices=False)
     variance = sizes**2 / np.sum(sizes**2)
-    count = int(np.searchsorted(np.cumsum(variance), kept) + 1)
+    count = max(int(np.searchsorted(np.cumsum(variance), kept) + 1), LEAST)
     alpha = (motions - mean).reshape(len(motions), -1) @ rows[:count].T
     speeds = np.array([cycle.gait.speed for cycle in cycles])
     slope, intercept = np.polyfit(speeds, alpha[1:], 1)
@@ -148,13 +153,18 @@ def pca_walk(
 
 
 def standing_posture(cycle: Cycle) -> Cycle:
-    """The rest pose as a cycle of speed 0: identity rotations (section 4.1), the hips at their highest."""
+    """Standing as a cycle of speed 0: identity rotations (section 4.1), arms hanging, the hips at their highest.
+
+    The source's rest pose (H-Anim) has hanging arms and ours may have none, so arms are as they hang in the walk.
+    """
     height = float(cycle.hips[:, 1].max())
     still = np.zeros_like(cycle.rotations)
     still[..., 3] = 1.0
+    arms = [index for index, joint in enumerate(cycle.joints) if joint.endswith(("Shoulder", "Arm", "Hand"))]
+    still[:, arms] = mean_rotation(continuous(cycle.rotations[:, arms]))
     return replace(
         cycle, rotations=still, hips=np.tile([0.0, height, 0.0], (len(cycle.hips), 1)), stride_length=0.0,
-        provenance=made_by("standing", "rest pose", cycle),
+        provenance=made_by("standing", "rest pose with hanging arms", cycle),
     )  # fmt: skip
 
 
