@@ -15,6 +15,7 @@ from rich.console import Console
 from experiment_app.body_commands import body_commands
 from experiment_app.errors import RunError, UsageError
 from experiment_app.motion_commands import actor_commands, clip
+from experiment_app.style_commands import style_commands
 
 app = App(
     name="gaitlab",
@@ -27,6 +28,7 @@ problems = Console(stderr=True, highlight=False, soft_wrap=True)
 app.command(clip)
 app.command(actor_commands)
 app.command(body_commands)
+app.command(style_commands)
 
 StudyArgument = Annotated[str, Parameter(help="A study file (YAML), or the name of a shipped study: walk_ratio.")]
 

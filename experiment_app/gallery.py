@@ -12,16 +12,19 @@ from experiment_app.film import save_picture
 from experiment_app.render.part_map import PartMap
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Camera, Marks, Scene, View, Walker
-from experiment_app.walkers import drawn_walkers
+from experiment_app.walkers import drawn_walkers, walk_of
 from experiment_app.windows.offscreen import offscreen_context
 from stimuli.bodies import shipped_names
 from stimuli.body_library import imported_names
+from stimuli.methods.recipe import Making
+from stimuli.methods.styles import default_styles
 from stimuli.point_light import FIGURES
 from stimuli.skeleton import JOINTS
 
 Pixels = NDArray[np.uint8]
 TILE = (400, 450)
 WIDE = (1200, 675)
+SMALL = (240, 340)
 CLOSE = Camera("three_quarter", 5.0, 1.3, 24.0)
 PHASES = (0.02, 0.18, 0.34, 0.5)
 
@@ -58,6 +61,9 @@ def make_gallery(folder: Path) -> Iterator[Path]:
     bodies = (*shipped_names(), *imported_names())
     yield row("bodies.png", [_one("M1", 0.2, body=name) for name in bodies[:6]])
     yield row("levels.png", [_one("F1", 0.2, lod=level) for level in (0, 1, 2)])
+    styles = drawn([_styled(style) for style in (None, *default_styles())], SMALL)
+    save_picture(np.vstack([np.hstack(styles[:6]), np.hstack(styles[6:])]), folder / "styles.png")
+    yield folder / "styles.png"
     yield _parts(folder / "body-parts.png")
     context.release()
 
@@ -82,6 +88,14 @@ def _views(actor: str) -> Iterator[Scene]:
         ("legs", 2.6, 0.55, 26.0),
     )
     return (_one(actor, 0.12, camera=Camera(*camera)) for camera in cameras)
+
+
+def _styled(style: str | None) -> Scene:
+    """M1 at 1.1 m/s in a style, or in his own; named under the picture."""
+    making = Making(style=style)
+    step_frequency = walk_of("M1", "", making, 1.1).step_frequency
+    walker = Walker("M1", 1.1, step_frequency, 0.02, making=making)
+    return Scene((walker,), CLOSE, caption=(style or "his own").replace("_", " "))
 
 
 def _treadmill() -> Scene:

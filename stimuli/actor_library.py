@@ -108,25 +108,28 @@ def check_name(name: str, library: Path | None = None, replace: bool = False) ->
 
 def stored(actor: StoredActor, library: Path | None = None) -> Path:
     """Writes an actor into the library, whole or not at all, and returns the file."""
-    folder = library or library_folder()
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{actor.person.name}.npz"
-    cycles = actor.cycles
-    handle, temporary = tempfile.mkstemp(prefix=".", suffix=".part", dir=folder)
+    path = (library or library_folder()) / f"{actor.person.name}.npz"
+    write_whole(
+        path,
+        about=np.array(json.dumps(_about(actor), ensure_ascii=False)),
+        coefficients=np.array([cycle.coefficients for cycle in actor.cycles], dtype=np.float32),
+    )
+    return path
+
+
+def write_whole(path: Path, **arrays: Any) -> None:
+    """Writes arrays into an npz file that is there whole or not at all, even if the power fails."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(prefix=".", suffix=".part", dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as stream:
-            np.savez_compressed(
-                stream,
-                about=np.array(json.dumps(_about(actor), ensure_ascii=False)),
-                coefficients=np.array([cycle.coefficients for cycle in cycles], dtype=np.float32),
-            )
+            np.savez_compressed(stream, **arrays)
             stream.flush()
             os.fsync(stream.fileno())
         os.replace(temporary, path)
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
-    return path
 
 
 def read_stored(name: str, library: Path | None = None) -> StoredActor:

@@ -99,14 +99,17 @@ def extract_cycle(clip: Clip, phases: int = PHASES) -> Cycle:
     return cycle_and_measures(clip, phases)[0]
 
 
-def cycle_and_measures(clip: Clip, phases: int = PHASES) -> tuple[Cycle, GaitMeasures]:
-    """The best one-stride loop, and the gait of the whole walk it was chosen from. Raises GaitError."""
+def cycle_and_measures(clip: Clip, phases: int = PHASES, rest: RestPose | None = None) -> tuple[Cycle, GaitMeasures]:
+    """The best one-stride loop, and the gait of the whole walk it was chosen from. Raises GaitError.
+
+    rest: the standing pose that rotations are counted from; by default the clip's own (rest_pose.py).
+    """
     world, positions = world_pose(clip)
     paths = foot_paths(clip, positions)
     events = clip.events or find_events(paths)
     measures = measure_paths(paths, events, clip.name)
     first, last, difference = _most_alike(clip, positions, measures)
-    rest = rest_pose(clip)
+    rest = rest or rest_pose(clip)
     joints = tuple(joint for joint in JOINTS if joint in clip.roles)
     margin = min(first, clip.frame_count - 1 - last, 2)
     frames = slice(first - margin, last + margin + 1)

@@ -15,6 +15,7 @@ from stimuli.importing.errors import ImportingError
 from stimuli.importing.signals import leg_length, walk_signals
 from stimuli.motion_files.axes import sides_swapped
 from stimuli.motion_files.reading import ENDINGS, read_clip
+from stimuli.motion_files.rest_pose import RestPose
 from stimuli.skeleton import Floats
 
 LONGEST = 120.0
@@ -82,12 +83,12 @@ def read_walks(folder: Path) -> list[CapturedWalk]:
     return walks
 
 
-def read_walk(path: Path) -> CapturedWalk:
-    """The captured walk of one motion file. Raises MotionFileError."""
+def read_walk(path: Path, rest: RestPose | None = None) -> CapturedWalk:
+    """The captured walk of one motion file, counted from a rest pose or its own. Raises MotionFileError."""
     clip = read_clip(path)
     _check_clip(clip, path)
     try:
-        cycle, measured = cycle_and_measures(clip)
+        cycle, measured = cycle_and_measures(clip, rest=rest)
     except GaitError as error:
         raise ImportingError(f"{path}: {str(error).removeprefix(clip.name + ': ')}") from error
     _check_walk(clip, cycle, path)

@@ -10,17 +10,19 @@ step mirrors the right one, so the drunken style has no two different steps. Cap
 from __future__ import annotations
 
 import csv
+import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
 
-from stimuli.actor_library import imported_names, read_stored
+from stimuli.actor_library import NAME, imported_names, library_folder, read_stored, write_whole
 from stimuli.actors import CYCLE_SPEEDS, METRONOME, Actor, people, walk_coefficients
 from stimuli.blend import CycleTable
-from stimuli.gait_model import SIGNALS, WalkCurves, load_gait_model
+from stimuli.gait_model import COEFFICIENTS, SIGNALS, WalkCurves, load_gait_model
 from stimuli.methods.errors import MethodError
 from stimuli.retarget import walk_cycle
 from stimuli.skeleton import Floats
@@ -30,45 +32,88 @@ from stimuli.skeleton import Floats
 class Style:
     """A way of walking as a change of any walk of the gait model.
 
-    shift:          (S,) rad or leg lengths added to the mean of each signal
     gain:           (S,) by which each signal's harmonics are multiplied
+    shift:          (S, C) rad or leg lengths added to each signal's coefficients
     step_frequency: times the actor's own at the same speed
+    provenance:     "made from the gait model", or of which captures it is, with licence and source
     """
 
     name: str
-    shift: Floats
     gain: Floats
-    step_frequency: float
+    shift: Floats
+    step_frequency: float = 1.0
+    provenance: str = "made from the gait model"
 
     def applied(self, coefficients: Floats) -> Floats:
         """(..., S, C) coefficients of a walk, in this style."""
         changed = coefficients * self.gain[:, None]
-        changed[..., 0] = coefficients[..., 0] + self.shift
-        return changed
+        changed[..., 0] = coefficients[..., 0]
+        return np.asarray(changed + self.shift)
 
 
 @cache
-def styles() -> dict[str, Style]:
+def default_styles() -> dict[str, Style]:
     """Name -> style, as styles.csv lists them."""
     text = (files("stimuli.methods") / "styles.csv").read_text(encoding="utf-8")
     found: dict[str, Style] = {}
     for row in csv.DictReader(line for line in text.splitlines() if not line.startswith("#")):
         name = row["style"]
-        style = found.setdefault(name, Style(name, np.zeros(len(SIGNALS)), np.ones(len(SIGNALS)), 1.0))
+        style = found.setdefault(name, Style(name, np.ones(len(SIGNALS)), np.zeros((len(SIGNALS), COEFFICIENTS))))
         if row["signal"] == "step_frequency":
             found[name] = replace(style, step_frequency=float(row["gain"]))
             continue
         for signal in _signals(row["signal"]):
-            style.shift[signal] += float(row["shift"] or 0.0)
+            style.shift[signal, 0] += float(row["shift"] or 0.0)
             style.gain[signal] *= float(row["gain"] or 1.0)
     return found
 
 
+def style_names() -> tuple[str, ...]:
+    """The styles there are, the default ones first, then those imported on this computer."""
+    return (*default_styles(), *imported_styles())
+
+
 def style_named(name: str) -> Style:
-    """Raises MethodError for a style that is not known."""
-    if name not in styles():
-        raise MethodError(f"style: there is no {name!r}; there are {', '.join(styles())}")
-    return styles()[name]
+    """A default or imported style. Raises MethodError for one that is not known."""
+    if name in default_styles():
+        return default_styles()[name]
+    if name in imported_styles():
+        return read_style(name)
+    raise MethodError(f"style: there is no {name!r}; there are {', '.join(style_names())}")
+
+
+def imported_styles() -> tuple[str, ...]:
+    """Names of imported styles, in order; none where there is no library."""
+    return tuple(sorted(path.stem for path in _folder().glob("*.npz")))
+
+
+def read_style(name: str) -> Style:
+    """An imported style. Raises MethodError when its file is damaged."""
+    path = _folder() / f"{name}.npz"
+    try:
+        with np.load(path, allow_pickle=False) as content:
+            shift = content["shift"].astype(np.float64)
+            if shift.shape != (len(SIGNALS), COEFFICIENTS) or not np.isfinite(shift).all():
+                raise ValueError(f"coefficients of shape {shift.shape}")
+            step_frequency, provenance = float(content["step_frequency"]), str(content["provenance"])
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise MethodError(f"{path} is damaged or of another version of gaitlab ({error}); import it again") from None
+    return Style(name, np.ones(len(SIGNALS)), shift, step_frequency, provenance)
+
+
+def store_style(style: Style, replace_old: bool = False) -> Path:
+    """Keeps a captured style in the user's library. Raises MethodError for a name it cannot have."""
+    if not NAME.fullmatch(style.name) or style.name in default_styles():
+        raise MethodError(f"{style.name!r} is no name for a new style; use letters, digits, - and _, as lab7_sad")
+    if style.name in imported_styles() and not replace_old:
+        raise MethodError(f"there is a style {style.name} already; choose another name, or say --replace")
+    path = _folder() / f"{style.name}.npz"
+    write_whole(path, shift=style.shift, step_frequency=style.step_frequency, provenance=np.array(style.provenance))
+    return path
+
+
+def _folder() -> Path:
+    return library_folder() / "styles"
 
 
 @lru_cache(maxsize=64)
@@ -83,7 +128,7 @@ def styled(actor: Actor, name: str) -> Actor:
         for walk, speed, frequency in _ingredients(actor)
     ]
     return replace(
-        actor, table=CycleTable.of(cycles), provenance=f"{actor.provenance}; {name} style made from the model"
+        actor, table=CycleTable.of(cycles), provenance=f"{actor.provenance}; {name} style {style.provenance}"
     )
 
 

@@ -10,7 +10,7 @@ from stimuli.methods.delivery import delivered, joint_rmse
 from stimuli.methods.errors import MethodError
 from stimuli.methods.made import made_walk
 from stimuli.methods.recipe import Making
-from stimuli.methods.styles import styled, styles
+from stimuli.methods.styles import default_styles, styled
 from stimuli.skeleton import JOINTS, Pose
 from tests.stimuli.test_actor_library import actor as stored_actor
 
@@ -30,11 +30,11 @@ def joints(actor, making):
 
 
 def test_there_are_the_eleven_styles_with_the_names_the_source_uses():
-    assert len(styles()) == 11
-    assert {"drunken", "manly", "tiptoe"} <= set(styles())  # figures 2 and 5 of Tilmanne & Dutoit
+    assert len(default_styles()) == 11
+    assert {"drunken", "manly", "tiptoe"} <= set(default_styles())  # figures 2 and 5 of Tilmanne & Dutoit
 
 
-@pytest.mark.parametrize("name", styles())
+@pytest.mark.parametrize("name", default_styles())
 def test_a_style_walks_at_the_speed_asked_for_without_sliding(actor, name):
     measured = delivered(made_walk(actor, Making(style=name), SPEED).cycle)
     assert measured.speed == pytest.approx(SPEED, rel=0.03)
@@ -43,7 +43,7 @@ def test_a_style_walks_at_the_speed_asked_for_without_sliding(actor, name):
 
 
 def test_styles_differ_from_each_other_and_from_the_actor(actor):
-    walks = [made_walk(actor, Making(style=name), SPEED).cycle for name in styles()]
+    walks = [made_walk(actor, Making(style=name), SPEED).cycle for name in default_styles()]
     walks.append(made_walk(actor, OWN, SPEED).cycle)
     for index, walk in enumerate(walks):
         for other in walks[index + 1 :]:
@@ -86,7 +86,7 @@ def test_an_imported_actor_walks_in_a_style_too(tmp_path, monkeypatch):
     monkeypatch.setenv("GAITLAB_ACTORS", str(tmp_path))
     stored(stored_actor())
     anna = load_actor("anna")
-    assert "sad style made from the model" in styled(anna, "sad").provenance
+    assert "sad style made from the gait model" in styled(anna, "sad").provenance
     walk = made_walk(anna, Making("fourier", style="sad"), 1.1)
     assert walk.step_frequency == pytest.approx(102.0, rel=1e-3)  # her captures leave the step frequency no choice
 
