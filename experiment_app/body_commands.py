@@ -61,7 +61,7 @@ def import_file(
 def list_bodies() -> int:
     """List every name that a study's `body` can have."""
     from stimuli.bodies import load_body, shipped_names
-    from stimuli.body_library import imported_names
+    from stimuli.body_library import MATCHED, MISMATCHED, imported_names
     from stimuli.point_light import FIGURES
 
     for name in (*shipped_names(), *imported_names()):
@@ -69,6 +69,8 @@ def list_bodies() -> int:
         counts = " / ".join(str(sum(len(s.triangles) for s in level)) for level in body.levels)
         kind = "comes with gaitlab" if name in shipped_names() else "imported"
         out.print(f"{name:24}{body.stature:.2f} m  {counts} triangles  {kind}", markup=False)
+    for name, whose in ((MATCHED, "the actor's sex"), (MISMATCHED, "the other sex")):
+        out.print(f"{name:24}the body that comes with gaitlab of {whose}", markup=False)
     for name in FIGURES:
         out.print(f"{name:24}drawn without a body, on the actor's own joints", markup=False)
     return 0

@@ -12,7 +12,7 @@ import numpy as np
 from experiment_app.render.drawn import DrawnWalker
 from experiment_app.scene import Scene, Walker
 from stimuli.actors import Actor, load_actor
-from stimuli.bodies import load_body, scaled, shipped_names
+from stimuli.bodies import body_for, load_body, scaled, shipped_names
 from stimuli.body import Body
 from stimuli.body_retarget import on_its_own_soles
 from stimuli.measure import delivered_gait
@@ -28,16 +28,18 @@ from stimuli.walker import drawn_pose, skin_matrices
 def cast(actor: str, body: str) -> tuple[Actor, Body]:
     """The actor, and the body at the actor's height that wears the motion; body "" is the actor's own.
 
-    A figure without a body (point_light, stick_figure, ...) moves on the joints of the actor's own body. Raises
-    ActorError or BodyError for a name that is not known.
+    matched and mismatched are the shipped bodies of the actor's sex and of the other. A figure without a body
+    (point_light, stick_figure, ...) moves on the joints of the actor's own body. Raises ActorError or BodyError for a
+    name that is not known.
     """
     if not body or body in FIGURES:
         chosen = load_actor(actor)
         return chosen, scaled(load_body(chosen.body), chosen.height)
-    worn = load_body(body)
+    name = body_for(load_actor(actor).sex, body)
+    worn = load_body(name)
     chosen = load_actor(actor, worn)
     grown = scaled(worn, chosen.height)
-    return (chosen if body in shipped_names() else on_its_own_soles(chosen, grown)), grown
+    return (chosen if name in shipped_names() else on_its_own_soles(chosen, grown)), grown
 
 
 @cache

@@ -14,12 +14,12 @@ from stimuli.body import Body, Surface
 from stimuli.body_files.baked import haircuts, read_baked
 from stimuli.body_files.errors import BodyError
 from stimuli.body_files.imported import import_body
-from stimuli.body_library import imported_names, path_of
+from stimuli.body_library import MATCHED, MISMATCHED, imported_names, path_of
 from stimuli.point_light import FIGURES
 from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
 from stimuli.skinning import skin
 
-__all__ = ["BodyError", "body_names", "hair_names", "load_body", "scaled", "shipped_names", "with_girths"]
+__all__ = ["BodyError", "body_for", "body_names", "hair_names", "load_body", "scaled", "shipped_names", "with_girths"]
 
 _NAMES = ("woman", "man")
 SLIMMEST, STOUTEST = 0.6, 1.8
@@ -33,8 +33,15 @@ def shipped_names() -> tuple[str, ...]:
 
 
 def body_names() -> tuple[str, ...]:
-    """What a study can name as body: shipped bodies, imported ones, and figures drawn without a body."""
-    return (*_NAMES, *imported_names(), *FIGURES)
+    """What a study can name as body: shipped and imported ones, those by the actor's sex, figures without a body."""
+    return (*_NAMES, *imported_names(), MATCHED, MISMATCHED, *FIGURES)
+
+
+def body_for(sex: str, name: str) -> str:
+    """The body that a name stands for on an actor of a sex ("F" or "M"): `matched` and `mismatched` depend on it."""
+    if name not in (MATCHED, MISMATCHED):
+        return name
+    return "woman" if (sex == "F") == (name == MATCHED) else "man"
 
 
 def load_body(name: str, hair: str | None = None) -> Body:

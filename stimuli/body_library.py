@@ -12,7 +12,10 @@ from stimuli.body_files.errors import BodyError
 from stimuli.point_light import FIGURES
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
-TAKEN = ("woman", "man", *FIGURES)
+MATCHED, MISMATCHED = "matched", "mismatched"
+"""Stand in a study for the shipped body of the actor's sex, and for that of the other sex, at the actor's height."""
+
+TAKEN = ("woman", "man", MATCHED, MISMATCHED, *FIGURES)
 
 
 def library_folder() -> Path:

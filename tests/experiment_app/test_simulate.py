@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from statistics import mean
 
 import pytest
@@ -103,3 +104,15 @@ def test_the_plan_and_its_order_depend_on_participant_and_seed_only(tmp_path):
     assert a.plan == b.plan
     a.journal.close()
     b.journal.close()
+
+
+def test_simulated_participants_fill_every_combination_of_groups_equally() -> None:
+    """Two factors of two groups: 8 participants are two in each of the four combinations."""
+    text = changed(
+        ("    sex: [female, male]  ", "    sex: [female, male]\n    vision: ['yes', 'no']"),
+    )
+    study = parse_study("s.yaml", text).study
+    answers = [draw_observer(study, number, seed=3).answers for number in range(1, 9)]
+    assert Counter((a["sex"], a["vision"]) for a in answers) == dict.fromkeys(
+        (("female", "yes"), ("male", "yes"), ("female", "no"), ("male", "no")), 2
+    )

@@ -16,7 +16,7 @@ from experiment_app.render.renderer import Renderer
 from experiment_app.render.street_model import HOUSES_AT, KERB_HEIGHT, STRETCH, street_side
 from experiment_app.scene import STREET_HALF_WIDTH, Camera, Ground, Scene, View, Walker
 from experiment_app.staging import staged
-from experiment_app.walkers import drawn_walkers
+from experiment_app.walkers import cast, drawn_walkers, measured_gait
 from protocols.study_file import parse_study
 from tests.protocols.studies import changed
 
@@ -144,7 +144,8 @@ def test_the_walker_looks_the_same_on_the_street_as_on_open_ground(
     inside = parts.codes[..., 0] > 0
     inside &= np.roll(inside, 1, 0) & np.roll(inside, -1, 0) & np.roll(inside, 1, 1) & np.roll(inside, -1, 1)
     assert inside.sum() > 500
-    assert np.abs(on[0] - on[1])[inside].max() == 0
+    different = np.abs(on[0] - on[1])[inside].max(axis=1) > 0
+    assert different.mean() < 0.005, "at most a gap narrower than a pixel shows what is behind"
 
 
 def test_the_street_passes_by(context: moderngl.Context, renderer: Renderer) -> None:
@@ -169,3 +170,14 @@ def test_the_street_is_closed_along_its_length_and_clear_of_the_roadway() -> Non
     triangles = position.reshape(-1, 3, 3)
     facing = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     assert np.all(np.sum(facing * normal.reshape(-1, 3, 3)[:, 0], axis=1) > 0.0)
+
+
+def test_a_mismatched_body_has_the_actors_height_and_walks_at_the_actors_speed() -> None:
+    for actor in ("F1", "M1"):
+        (own, body), (other, worn) = cast(actor, "matched"), cast(actor, "mismatched")
+        assert body.name != worn.name
+        assert worn.stature == pytest.approx(body.stature)
+        assert own.sex == other.sex
+        walkers = (Walker(actor, 1.1, 105.0, 0.0, body=name) for name in ("matched", "mismatched"))
+        for walker in walkers:
+            assert measured_gait(Scene((walker,)))["speed"] == pytest.approx(1.1, abs=0.02)

@@ -6,7 +6,7 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from stimuli.bodies import BodyError, hair_names, load_body, scaled, shipped_names, with_girths
+from stimuli.bodies import BodyError, body_for, hair_names, load_body, scaled, shipped_names, with_girths
 from stimuli.body_files.baked import read_baked
 from stimuli.skeleton import JOINTS, PARENTS
 from stimuli.skinning import skin
@@ -225,3 +225,8 @@ def test_girths_of_one_change_nothing():
 def test_girths_that_make_no_person_are_refused(girths):
     with pytest.raises(BodyError):
         with_girths(load_body("man"), girths)
+
+
+@pytest.mark.parametrize(("sex", "matched", "mismatched"), [("F", "woman", "man"), ("M", "man", "woman")])
+def test_matched_and_mismatched_bodies_follow_the_actors_sex(sex: str, matched: str, mismatched: str) -> None:
+    assert (body_for(sex, "matched"), body_for(sex, "mismatched"), body_for(sex, "man")) == (matched, mismatched, "man")
