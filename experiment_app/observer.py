@@ -51,8 +51,7 @@ def draw_observer(study: Study, participant_number: int, seed: int) -> Observer:
     """An observer of the study's simulated population; the same seed gives the same observer.
 
     Preferences over actors are normal with the study's means and s.d. and correlate by `shared` within a
-    participant. Between-participant factors are filled in turn by the participant's number, the first fastest, so that
-    every combination of their levels is as frequent as it can be.
+    participant. Between-participant factors are filled in turn by the participant's number.
     """
     rng = Random(f"{study.study}/observer/{seed}")
     return Observer(
