@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from protocols.assignment import counts, group_of
 from protocols.design import Trial, default_seed, make_trials, square_parts, square_row, square_rows
 from protocols.order import AdaptiveOrder, ListOrder
-from protocols.plan import QuestionsStep, TrialStep, keys_of, make_plan
+from protocols.plan import QuestionsStep, TrialStep, make_plan
 from protocols.study import Level, Study
 
 FEW = 12
@@ -111,7 +111,7 @@ def what_participant_sees(study: Study, number: int, seed: int | None = None) ->
         parts = square_parts(study)
         shown = " - ".join(_named(parts[part]) for part in square_row(study, number))
         lines.append(f"  row {(number - 1) % len(square_rows(study)) + 1} of the square: {shown}")
-    lines.append(f"  keys: {', '.join(f'{name} {key}' for name, key in keys_of(study, number).items())}")
+    lines.append(f"  keys: {', '.join(f'{name} {key}' for name, key in study.task.keys_for(number).items())}")
     if isinstance(order, AdaptiveOrder):
         lines.append(f"  {order.of} is placed by the answers; shown here is where each track starts")
     blocks = {step.trial.block for step in plan.steps if isinstance(step, TrialStep) and not step.trial.practice}

@@ -5,25 +5,27 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from experiment_app.balance import balance, likely_seed, order_in_words
-from protocols.consistency import inconsistencies, referred_factors
-from protocols.design import conditions, make_trials, practice_trials, tracks
+from experiment_app.staging import making_of
+from protocols.assignment import groups
+from protocols.consistency import inconsistencies, referred_factors, settings_of
+from protocols.design import conditions, make_trials, tracks
+from protocols.mistake import Mistake, Place
 from protocols.order import AdaptiveOrder
-from protocols.plan import value_of
-from protocols.study import Level, Study, Words
-from protocols.study_file import Mistake, Place, StudyFile, read_study
+from protocols.parts import Level
+from protocols.setting import leaves
+from protocols.stimulus import Walk
+from protocols.study import Study, Words
+from protocols.study_file import StudyFile, read_study
 
 SMALLEST_TEXT = 20
 """Pixels of a 1080p screen below which a page is too long: on 24 inches this is 5.5 mm with its leading."""
 
 READING_SPEED = 200.0
 """Words read per minute on a screen, a cautious figure for the expected duration."""
-
-ADJUSTING = 9.0
-"""s a participant typically takes per adjustment (Niay 2022: 96 trials in about a quarter of an hour)."""
 
 
 def checked_study(study: str) -> StudyFile:
@@ -41,25 +43,27 @@ def refuse_mistakes(file: StudyFile, mistakes: Sequence[Mistake]) -> None:
 
 
 def check_names(file: StudyFile) -> list[Mistake]:
-    """Actors and bodies that do not exist."""
+    """Actors, bodies and styles that do not exist."""
     from stimuli.actors import actor_names
     from stimuli.bodies import body_names
+    from stimuli.methods.styles import style_names
 
-    study = file.study
-    mistakes = [*_names(study, study.stimulus.actor, ("stimulus", "actor"), "actor", actor_names())]
-    if study.stimulus.body:
-        mistakes += _names(study, study.stimulus.body, ("stimulus", "body"), "body", body_names())
-    return mistakes
+    known = {"actor": actor_names(), "body": body_names(), "style": style_names()}
+    mistakes: dict[Place, Mistake] = {}
+    for setting, place, _ in settings_of(file.study):
+        what = str(place[-1])
+        for mistake in _names(file.study, setting, place, what, known[what]) if what in known else ():
+            mistakes.setdefault(mistake.where, mistake)
+    return list(mistakes.values())
 
 
-def _names(study: Study, value: str, place: Place, what: str, known: Sequence[str]) -> Iterator[Mistake]:
-    """Mistakes in a name that the stimulus gives, directly or by a factor's levels and training trials."""
+def _names(study: Study, setting: object, place: Place, what: str, known: Sequence[str]) -> Iterator[Mistake]:
+    """Mistakes in the names that a setting gives, by itself, by a factor's levels and in training trials."""
     from difflib import get_close_matches
 
-    named: list[tuple[object, Place]] = [(value, place)]
-    if value.startswith("$"):
-        factor = value[1:]
-        named = [(level, ("factors", factor, i)) for i, level in enumerate(study.factors.get(factor, []))]
+    named = list(leaves(setting, place, study.factors))
+    if isinstance(setting, str) and setting.startswith("$"):
+        factor = setting[1:]
         if factor in study.participants.assigned:
             levels = study.participants.between.get(factor, [])
             named = [(level, ("participants", "between", factor, i)) for i, level in enumerate(levels)]
@@ -77,47 +81,54 @@ def _names(study: Study, value: str, place: Place, what: str, known: Sequence[st
 
 
 def _coverage(study: Study) -> Iterator[Mistake]:
-    """Speeds outside what every actor of the study can walk at, over the task's whole range."""
+    """Walks that cannot be: speeds outside what the actor can walk at, over the task's whole range, or not made so."""
+    from experiment_app.walkers import own_step_frequency
     from stimuli.actors import load_actor
     from stimuli.walker import drawn_pose
 
-    speed, actor = study.stimulus.speed, study.stimulus.actor
-    factor = speed[1:] if isinstance(speed, str) else None
-    speeds = list(enumerate(study.factors[factor])) if factor else [(0, speed)]
-    actors = _levels_of(study, actor[1:]) if actor.startswith("$") else [actor]
-    asked: list[tuple[Place, float, str]] = [
-        (("factors", factor, i) if factor else ("stimulus", "speed"), float(value), str(name))
-        for i, value in speeds
-        for name in actors
-    ]
-    for trial in practice_trials(study):
-        place: Place = ("practice", trial.number - 1, factor) if factor else ("practice", trial.number - 1)
-        asked.append((place, float(value_of(speed, trial)), str(value_of(actor, trial))))
+    impossible: dict[Walk, str] = {}
+    checked: set[Walk] = set()
     found: set[Place] = set()
-    for place, value, name in asked:
-        try:
-            for frequency in (study.task.range.minimum, study.task.range.maximum):
-                drawn_pose(load_actor(name), value, frequency, 0.0)
-        except ValueError as error:
-            if place not in found:
-                yield Mistake(place, str(error))
-            found.add(place)
+    for levels, place in _conditions_and_places(study):
+        for walk in study.task.extremes(study.stimulus, levels):
+            if walk not in checked:
+                checked.add(walk)
+                try:
+                    making = making_of(walk)
+                    if making is None and walk.step_frequency is not None:
+                        drawn_pose(load_actor(walk.actor), walk.speed, walk.step_frequency, 0.0)
+                    else:
+                        own_step_frequency(walk.actor, walk.body, making, walk.speed)
+                except ValueError as error:
+                    impossible[walk] = str(error)
+            if walk in impossible and place not in found:
+                found.add(place)
+                yield Mistake(place, impossible[walk])
 
 
-def _levels_of(study: Study, factor: str) -> Sequence[Level]:
-    """The levels of a factor, whether within participants or assigned to them."""
-    return study.factors.get(factor) or study.participants.between[factor]
+def _conditions_and_places(study: Study) -> Iterator[tuple[Mapping[str, Level], Place]]:
+    """The levels of every condition and training trial, and where its speed stands."""
+    speed = study.stimulus.speed
+    factor = speed[1:] if isinstance(speed, str) else None
+    for group in groups(study):
+        for levels in conditions(study):
+            place: Place = ("stimulus", "speed")
+            if factor in study.factors:
+                place = ("factors", factor, study.factors[factor].index(levels[factor]))
+            yield {**group, **levels}, place
+        for i, trial in enumerate(study.practice):
+            yield {**group, **trial.levels}, ("practice", i, factor) if factor else ("practice", i)
 
 
 def expected_minutes(study: Study) -> float:
-    """How long a session takes, in minutes: reading every page, answering, adjusting, intervals and breaks."""
+    """How long a session takes, in minutes: reading every page, questions, trials, intervals and breaks."""
     pages = study.pages
     shown = [pages.consent, *pages.instructions, pages.before_practice, pages.before_trials, pages.debrief]
     words = sum(len(page.text.split()) for page in shown if page is not None)
     trials = len(make_trials(study, seed=1)) + len(study.practice)
     breaks = (trials // study.breaks.every) * 60.0 if study.breaks else 0.0
-    adjusting = trials * (max(ADJUSTING, study.task.minimum_looking_time) + study.interval)
-    return words / READING_SPEED + (len(study.participants.questions) * 8.0 + adjusting + breaks) / 60.0
+    answering = trials * (study.task.seconds + study.interval)
+    return words / READING_SPEED + (len(study.participants.questions) * 8.0 + answering + breaks) / 60.0
 
 
 def summary(file: StudyFile) -> list[str]:
@@ -173,11 +184,12 @@ def _unused_factors(study: Study) -> Iterator[str]:
 
 
 def _wrong_arrows(study: Study) -> Iterator[str]:
-    keys = study.task.keys
+    keys = study.task.keys_for(1)
+    named = " and ".join(f"{{{name}}}" for name in keys if name != "break")
     told = " ".join(page.text for page in [*study.pages.instructions, study.pages.before_practice] if page)
     for sign, key in (("←", "left"), ("→", "right")):
-        if sign in told and key not in (keys.lower, keys.raise_):
-            yield f"the instructions name {sign}, which is no key of the task; write {{lower}} and {{raise}} instead."
+        if sign in told and key not in keys.values():
+            yield f"the instructions name {sign}, which is no key of the task; write {named} instead."
 
 
 def _untrue_perspective(study: Study) -> Iterator[str]:

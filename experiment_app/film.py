@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from experiment_app.errors import RunError, UsageError
-from experiment_app.scene import Scene, Walker
-from experiment_app.staging import staged
+from experiment_app.scene import Scene
+from experiment_app.staging import view_scene
 from protocols.design import Trial
-from protocols.plan import value_of
+from protocols.events import Shown
+from protocols.plan import Plan, TrialStep
 from protocols.study import Study
 
 Pixels = NDArray[np.uint8]
@@ -57,19 +58,10 @@ def condition_of(study: Study, given: Sequence[str]) -> Trial:
 
 
 def walking(study: Study, trial: Trial, seconds: float, lod: int | None = None) -> Scene:
-    """The scene of a condition so many seconds after its onset, with the step frequency it starts at."""
-    stimulus = study.stimulus
-    speed = float(value_of(stimulus.speed, trial))
-    step_frequency = float(value_of(study.task.start, trial))
-    walker = Walker(
-        actor=str(value_of(stimulus.actor, trial)),
-        body=str(value_of(stimulus.body, trial)) if stimulus.body else "",
-        speed=speed,
-        step_frequency=step_frequency,
-        phase=seconds * step_frequency / 120.0 % 1.0,
-        distance=speed * seconds,
-    )
-    scene = staged(study, (walker,))
+    """The scene of a condition so many seconds after its onset, nothing pressed; alternatives as in the file."""
+    order = tuple(study.task.walks(study.stimulus, trial.levels))
+    begun = Plan(study, (), study.task.keys_for(1), 1).begin(TrialStep(trial, order))
+    scene = view_scene(study, begun.handle(Shown(0.0)).advance(seconds).view)
     return scene if lod is None else replace(scene, lod=lod)
 
 

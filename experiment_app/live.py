@@ -15,11 +15,11 @@ from experiment_app.errors import RunError, UsageError
 from experiment_app.loop import run_session
 from experiment_app.opening import OpenRun, kind_of, open_new, open_unfinished, refuse_mixed, unfinished_run
 from experiment_app.run_folder import Run, check_participant, first_headers
-from experiment_app.walkers import cast
+from experiment_app.staging import making_of
+from experiment_app.walkers import cast, own_step_frequency
 from experiment_app.windows.desktop import DesktopWindow
 from protocols import resuming
-from protocols.design import Trial
-from protocols.plan import Plan, TrialStep, value_of
+from protocols.plan import Plan, TrialStep, walks_of
 from protocols.session import begin
 from protocols.study_file import StudyFile, parse_study
 
@@ -120,14 +120,10 @@ def _minutes_since(old: Run, say: Callable[[str], None]) -> float:
 
 def prepare(plan: Plan) -> None:
     """Makes every walker the plan will show, so that nothing is loaded between trials."""
-    stimulus = plan.study.stimulus
-    for step in plan.steps:
-        if isinstance(step, TrialStep):
-            cast(str(value_of(stimulus.actor, step.trial)), _body(plan, step.trial))
-
-
-def _body(plan: Plan, trial: Trial) -> str:
-    return str(value_of(plan.study.stimulus.body, trial)) if plan.study.stimulus.body else ""
+    steps = [step for step in plan.steps if isinstance(step, TrialStep)]
+    for walk in {walk for step in steps for walk in walks_of(plan.study, step).values()}:
+        cast(walk.actor, walk.body)
+        own_step_frequency(walk.actor, walk.body, making_of(walk), walk.speed)
 
 
 @contextmanager

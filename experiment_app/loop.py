@@ -87,11 +87,18 @@ def _write(session: Session, journal: Recorder, window: Window, frames: TrialFra
             record = replace(record, frame=len(frames))
         elif isinstance(record, TrialRecord) and window.period and len(frames):
             log = frames.log(record, window.period)
-            walker = replace(scene.walkers[0], step_frequency=record.response["step_frequency"])
-            measured = window.measure(replace(scene, walkers=(walker,)))
+            measured = window.measure(_as_answered(scene, record))
             whole.append(log)
             record = replace(record, frames=len(frames), late_frames=len(log.late), measured=measured)
         whole.append(record)
     if whole:
         journal.write(whole)
     return session
+
+
+def _as_answered(scene: Scene, record: TrialRecord) -> Scene:
+    """The last scene of a trial, its walker at the step frequency that was the answer, if one was adjusted."""
+    frequency = record.response.get("step_frequency")
+    if frequency is None or not scene.walkers:
+        return scene
+    return replace(scene, walkers=(replace(scene.walkers[0], step_frequency=float(frequency)),))

@@ -1,4 +1,4 @@
-"""A simulated observer: prefers a walk ratio per actor, holds and releases keys, corrects, confirms.
+"""A simulated participant: reads pages, answers questions, and does in each trial what its behaviour says.
 
 It sees only what a person sees (the page or the trial) and answers with the same events. Randomness comes from
 the run's seed.
@@ -7,44 +7,18 @@ the run's seed.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
 from random import Random
 
-from protocols.adjustment import AdjustmentTrial
+from experiment_app.behaviour import BEHAVIOURS, Observer
 from protocols.assignment import place_in_group
-from protocols.events import Clicked, Event, KeyDown, KeyUp, Typed
+from protocols.events import Clicked, Event, KeyDown, Typed
 from protocols.form import Form
-from protocols.plan import QuestionsStep, Step, TextStep, TrialStep, value_of
+from protocols.plan import QuestionsStep, Step, TextStep, TrialStep
 from protocols.session import Session
 from protocols.study import Question, Simulation, Study
 
 READING = 1.0
 """s a simulated observer looks at a page."""
-
-LOOKING = (0.6, 1.4)
-"""s of looking before the first key and between keys, uniform."""
-
-OVERSHOOT = 3.0
-"""steps/min, s.d. of where the first, coarse adjustment ends around the target."""
-
-RELEASE = 0.015
-"""s, s.d. of the moment a key is let go in the fine adjustment."""
-
-
-@dataclass(frozen=True)
-class Observer:
-    """One simulated participant's preferences.
-
-    preferred:   actor to preferred walk ratio, m·min.
-    trial_noise: m·min, s.d. over trials; anchoring: share of the way back to the start value.
-    answers:     question id to answer.
-    """
-
-    preferred: Mapping[str, float]
-    trial_noise: float
-    anchoring: float
-    answers: Mapping[str, str]
 
 
 def draw_observer(study: Study, participant_number: int, seed: int) -> Observer:
@@ -53,12 +27,13 @@ def draw_observer(study: Study, participant_number: int, seed: int) -> Observer:
     Preferences over actors are normal with the study's means and s.d. and correlate by `shared` within a
     participant. Between-participant factors are filled in turn by the participant's number.
     """
-    rng = Random(f"{study.study}/observer/{seed}")
+    rng, own = Random(f"{study.study}/observer/{seed}"), Random(f"{study.study}/person/{seed}")
     return Observer(
-        _preferences(study.simulation, rng),
-        study.simulation.trial_noise,
-        study.simulation.anchoring,
-        _answers(study, participant_number, rng),
+        simulation=study.simulation,
+        preferred=_preferences(study.simulation, rng),
+        leaning=own.gauss(0.0, 1.0),
+        pace=own.gauss(0.0, 1.0),
+        answers=_answers(study, participant_number, rng),
     )
 
 
@@ -108,8 +83,9 @@ class SimulatedParticipant:
         if session.shown is None or self._planned_for == (session.step, session.shown):
             return
         self._planned_for = (session.step, session.shown)
-        if session.trial is not None:
-            self._events = self._adjust(session.step, session.trial)
+        if session.trial is not None and isinstance(session.step, TrialStep):
+            behave = BEHAVIOURS[self._study.task.kind]
+            self._events = behave(self._observer, session.trial, session.step.trial.levels, self._rng)
         elif isinstance(session.stage, Form):
             self._events = self._fill(session.step, session.shown + READING)
 
@@ -135,30 +111,3 @@ class SimulatedParticipant:
             else:
                 events += [Clicked(time, question.id), Typed(time, answer)]
         return [*events, Clicked(time, "next")]
-
-    def _target(self, step: TrialStep, trial: AdjustmentTrial) -> float:
-        """steps/min at which this observer would stop: SF = sqrt(60 v / WR), from WR = SL / SF and v = SL SF / 60."""
-        actor = str(value_of(self._study.stimulus.actor, step.trial))
-        preferred = self._observer.preferred
-        middle = sum(preferred.values()) / len(preferred)
-        noisy = preferred.get(actor, middle) + self._rng.gauss(0.0, self._observer.trial_noise)
-        target = math.sqrt(60.0 * trial.speed / max(noisy, 1e-4))
-        target += self._observer.anchoring * (trial.start - target)
-        return min(max(target, trial.task.minimum), trial.task.maximum)
-
-    def _adjust(self, step: Step, trial: AdjustmentTrial) -> list[Event]:
-        assert isinstance(step, TrialStep)
-        task, target = trial.task, self._target(step, trial)
-        coarse = min(max(target + self._rng.gauss(0.0, OVERSHOOT), task.minimum), task.maximum)
-        time, setting = trial.onset, trial.start
-        events: list[Event] = []
-        for goal, slip in ((coarse, 0.0), (target, RELEASE)):
-            time += self._rng.uniform(*LOOKING)
-            if goal != setting:
-                key = task.raise_key if goal > setting else task.lower_key
-                held = max(abs(goal - setting) / task.rate + self._rng.gauss(0.0, slip), 0.0)
-                events += [KeyDown(time, key), KeyUp(time + held, key)]
-                time += held
-            setting = goal
-        time = max(time + self._rng.uniform(*LOOKING), trial.onset + task.minimum_looking_time + 0.1)
-        return [*events, KeyDown(time, task.confirm_key), KeyUp(time + 0.08, task.confirm_key)]

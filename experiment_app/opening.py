@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -22,9 +22,10 @@ from experiment_app.run_folder import (
     run_numbers,
 )
 from protocols import resuming
-from protocols.assignment import group_of, groups
-from protocols.design import default_seed, make_trials, practice_trials
-from protocols.plan import Plan, keys_of, make_plan, value_of
+from protocols.assignment import group_of
+from protocols.consistency import shown_walks
+from protocols.design import default_seed
+from protocols.plan import Plan, make_plan
 from protocols.record import Continued, Header
 from protocols.session import remaining
 from protocols.study import Study
@@ -91,7 +92,7 @@ def open_new(
         run=number,
         seed=seed,
         simulated=simulated,
-        keys=keys_of(study.study, order),
+        keys=study.study.task.keys_for(order),
         versions=_versions(),
         display=display,
         started=_utc_now(),
@@ -133,9 +134,7 @@ def _provenance(study: Study) -> dict[str, str]:
     """Actor to where the walk comes from, for every actor of the study and its training."""
     from stimuli.actors import load_actor
 
-    shown = [*make_trials(study, 0), *practice_trials(study)]
-    trials = [replace(trial, group=group) for group in groups(study) for trial in shown]
-    actors = sorted({str(value_of(study.stimulus.actor, trial)) for trial in trials})
+    actors = sorted({walk.actor for walk in shown_walks(study)})
     return {actor: load_actor(actor).provenance for actor in actors}
 
 

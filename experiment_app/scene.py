@@ -105,12 +105,32 @@ class Box:
 
 
 @dataclass(frozen=True)
+class Slider:
+    """A scale from minimum to maximum with labelled ends; a click on it answers `id:value`.
+
+    step: between the points that can be marked; None where every value can. mark: None before there is one.
+    """
+
+    id: str
+    minimum: float
+    maximum: float
+    step: float | None
+    low: str
+    high: str
+    mark: float | None = None
+
+
+@dataclass(frozen=True)
 class Row:
-    """A question's prompt and the boxes that answer it, or a row of buttons when the prompt is empty."""
+    """A question's prompt and the boxes that answer it, or a row of buttons when the prompt is empty.
+
+    slider: stands left of the boxes.
+    """
 
     prompt: str
     boxes: tuple[Box, ...]
     error: str = ""
+    slider: Slider | None = None
 
 
 @dataclass(frozen=True)
@@ -118,6 +138,7 @@ class Page:
     """A page of text, centred in a calm column: lines, then rows of boxes, then a hint at the bottom.
 
     over_scene: drawn over the (dimmed) walker instead of on a plain background, as a pause is.
+    at_bottom:  over the scene, at its lower edge, without dimming it: the walk is still to be looked at.
     """
 
     lines: tuple[Line, ...] = ()
@@ -125,6 +146,7 @@ class Page:
     hint: str = ""
     progress: float | None = None
     over_scene: bool = False
+    at_bottom: bool = False
 
 
 @dataclass(frozen=True)

@@ -2,27 +2,36 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 
-from experiment_app.scene import Box, Camera, Line, Marks, Page, Row, Scene, Walker
-from protocols.adjustment import AdjustmentTrial
+from experiment_app.scene import Box, Camera, Line, Marks, Page, Row, Scene, Slider, Walker
+from experiment_app.walkers import own_step_frequency
 from protocols.form import Choice, Form
-from protocols.plan import QuestionsStep, TextStep, TrialStep, value_of
-from protocols.session import Interval, Overlay, Session
+from protocols.plan import QuestionsStep, TextStep
+from protocols.rating import CONFIRM, ON_SCALE
+from protocols.session import Overlay, Session
+from protocols.stimulus import Making as OwnMaking
+from protocols.stimulus import Walk
 from protocols.study import Study
+from protocols.task import Scale, Seen, View
 from protocols.viewing import field_of_view
+from stimuli.methods.recipe import Making
+
+OWN_WAY = OwnMaking()
+"""How a walk is made when the study file says nothing: as the actor was captured."""
 
 
 def stage(session: Session) -> Scene:
     """The scene of a session at its present time."""
+    study, trial = session.plan.study, session.trial
     if session.overlay is not None:
-        scene = _trial_scene(session) if session.trial is not None else Scene(page=None)
+        scene = view_scene(study, trial.view) if trial is not None else Scene(page=None)
         return replace(scene, page=_overlay_page(session, session.overlay), caption="")
-    if isinstance(session.stage, AdjustmentTrial):
-        return _trial_scene(session)
-    if isinstance(session.stage, Interval):
-        return Scene(page=Page())
-    return Scene(page=_page(session, session.stage))
+    if trial is not None:
+        return view_scene(study, trial.view)
+    if isinstance(session.stage, Form):
+        return Scene(page=_page(session, session.stage))
+    return Scene(page=Page())
 
 
 def staged(study: Study, walkers: tuple[Walker, ...]) -> Scene:
@@ -46,20 +55,52 @@ def staged(study: Study, walkers: tuple[Walker, ...]) -> Scene:
     )
 
 
-def _trial_scene(session: Session) -> Scene:
-    step, trial, study = session.step, session.trial, session.plan.study
-    assert isinstance(step, TrialStep)
-    assert trial is not None
-    body = value_of(study.stimulus.body, step.trial) if study.stimulus.body else ""
-    walker = Walker(
-        actor=str(value_of(study.stimulus.actor, step.trial)),
-        body=str(body),
-        speed=trial.speed,
-        step_frequency=trial.setting,
-        phase=trial.phase,
-        distance=trial.distance,
+def view_scene(study: Study, view: View) -> Scene:
+    """What a trial shows: one walk, or two beside each other, and below them what is asked."""
+    scenes = [staged(study, (_walker(seen),)) for seen in view.walks]
+    if not scenes:
+        return Scene(page=_question_page(study, view))
+    scene = scenes[0] if len(scenes) == 1 else replace(scenes[0], beside=scenes[1])
+    if view.scale is not None:
+        return replace(scene, page=_question_page(study, view))
+    return replace(scene, caption=view.question or study.words.trial_caption)
+
+
+def _walker(seen: Seen) -> Walker:
+    walk, making = seen.walk, making_of(seen.walk)
+    frequency = walk.step_frequency
+    if frequency is None:
+        frequency = own_step_frequency(walk.actor, walk.body, making, walk.speed)
+    strides = seen.time * frequency / 120.0 if seen.strides is None else seen.strides
+    return Walker(
+        actor=walk.actor,
+        body=walk.body,
+        speed=walk.speed,
+        step_frequency=frequency,
+        phase=strides % 1.0,
+        distance=seen.distance,
+        making=making,
     )
-    return replace(staged(study, (walker,)), caption=study.words.trial_caption)
+
+
+def making_of(walk: Walk) -> Making | None:
+    """The way a walk is made as the stimuli know it; None for the actor's own, at any step frequency."""
+    return None if walk.making == OWN_WAY else Making(**asdict(walk.making))
+
+
+def _question_page(study: Study, view: View) -> Page:
+    """The question without walks to see, or under them with the scale that answers it."""
+    if view.scale is None:
+        return Page((Line(view.question),) if view.question else ())
+    button = Box(CONFIRM, study.words.next, "button")
+    row = Row(view.question, (button,), slider=_slider(view.scale))
+    return Page((), (row,), hint=study.words.rating_hint, over_scene=bool(view.walks), at_bottom=bool(view.walks))
+
+
+def _slider(scale: Scale) -> Slider:
+    return Slider(
+        ON_SCALE.removesuffix(":"), scale.minimum, scale.maximum, scale.step, scale.low, scale.high, scale.mark
+    )  # fmt: skip
 
 
 def paragraphs(text: str) -> tuple[Line, ...]:

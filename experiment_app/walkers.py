@@ -16,6 +16,7 @@ from stimuli.bodies import body_for, load_body, scaled, shipped_names
 from stimuli.body import Body
 from stimuli.body_retarget import on_its_own_soles
 from stimuli.measure import delivered_gait
+from stimuli.methods.actor_walks import natural_step_frequency
 from stimuli.methods.delivery import delivered
 from stimuli.methods.made import MadeWalk, made_walk
 from stimuli.methods.recipe import Making
@@ -93,6 +94,14 @@ def pose_checksum(drawn: Sequence[DrawnWalker]) -> str:
         values = np.append(walker.matrices.ravel(), walker.place)
         checksum = crc32(np.rint(values * 1e4).astype("<i4").tobytes(), checksum)
     return f"{checksum:08x}"
+
+
+@cache
+def own_step_frequency(actor: str, body: str, making: Making | None, speed: float) -> float:
+    """steps/min that a walk has by itself at a speed (m/s), as captured or as made."""
+    if making is None:
+        return natural_step_frequency(cast(actor, body)[0], speed)
+    return walk_of(actor, body, making, speed).step_frequency
 
 
 def measured_gait(scene: Scene) -> dict[str, float]:

@@ -6,13 +6,20 @@ Each check returns Mistakes with their place; knows no actor or body (see experi
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import product
+from typing import Any
 
+from protocols.assignment import groups
+from protocols.design import conditions
+from protocols.mistake import Mistake, Place, no_such
 from protocols.order import AdaptiveOrder
 from protocols.order_mistakes import order_mistakes
-from protocols.planned_analysis import analysis_mistakes, no_such
+from protocols.parts import Level
+from protocols.planned_analysis import analysis_mistakes
+from protocols.setting import Given, references, setting_mistakes, unfit
+from protocols.stimulus import Walk
 from protocols.study import ChoiceQuestion, Study
-from protocols.study_file import Mistake, Place
 from protocols.viewing import viewing_mistakes
 
 TAKEN_COLUMNS = frozenset({"study", "participant", "run", "trial", "block", "repetition"})
@@ -30,7 +37,7 @@ def inconsistencies(study: Study) -> list[Mistake]:
         *_levels(study),
         *_references(study),
         *_practice(study),
-        *_range(study),
+        *study.task.mistakes(study),
         *_between(study),
         *order_mistakes(study),
         *analysis_mistakes(study),
@@ -39,15 +46,31 @@ def inconsistencies(study: Study) -> list[Mistake]:
     ]
 
 
+def settings_of(study: Study) -> Iterator[Given]:
+    """Every setting of the stimulus and the task, with its place and the type of its values."""
+    yield from study.stimulus.settings(("stimulus",))
+    yield from study.task.settings(("task",))
+
+
 def referred_factors(study: Study) -> dict[str, Place]:
-    """Factors that the stimulus and the task refer to with `$factor`, and where they do."""
-    places: list[tuple[object, Place]] = [
-        (study.stimulus.actor, ("stimulus", "actor")),
-        (study.stimulus.speed, ("stimulus", "speed")),
-        (study.stimulus.body, ("stimulus", "body")),
-        (study.task.start, ("task", "start")),
-    ]
-    return {value[1:]: place for value, place in places if isinstance(value, str) and value.startswith("$")}
+    """Factors that the stimulus and the task depend on, and where."""
+    return {factor: place for setting, place, _ in settings_of(study) for factor in references(setting)}
+
+
+def shown_walks(study: Study) -> set[Walk]:
+    """Every walk that the study's conditions and training trials show."""
+    return _walks(study, [*conditions(study), *(trial.levels for trial in study.practice)])
+
+
+def _walks(study: Study, trials: Iterable[Mapping[str, Level]]) -> set[Walk]:
+    """The walks of trials with these levels; none where a setting has no value, which has a sentence of its own."""
+    walks: set[Walk] = set()
+    for levels, group in product(list(trials), groups(study)):
+        try:
+            walks.update(study.task.walks(study.stimulus, {**group, **levels}).values())
+        except (KeyError, ValueError):
+            continue
+    return walks
 
 
 def _levels(study: Study) -> Iterator[Mistake]:
@@ -66,20 +89,18 @@ def _levels(study: Study) -> Iterator[Mistake]:
 
 
 def _references(study: Study) -> Iterator[Mistake]:
-    for factor, place in referred_factors(study).items():
-        if factor not in study.factors and factor not in study.participants.assigned:
-            yield Mistake(place, no_such(f"${factor}", [f"${f}" for f in study.factors], "factor"))
-    for place, value in (
-        (("stimulus", "speed"), study.stimulus.speed),
-        (("task", "start"), study.task.start),
-    ):
-        if isinstance(value, str) and value[1:] in study.factors:
-            for i, level in enumerate(study.factors[value[1:]]):
-                if not isinstance(level, (int, float)):
-                    message = f"{level!r} is not a number, and {'.'.join(place)} takes it from here"
-                    yield Mistake(("factors", value[1:], i), message)
-                elif level <= 0:
-                    yield Mistake(("factors", value[1:], i), f"{level} must be more than 0")
+    found: dict[Place, Mistake] = {}
+    factors: dict[str, list[Level]] = {**study.factors}
+    factors.update({name: [*study.participants.between.get(name, [])] for name in study.participants.assigned})
+    observers = study.simulation
+    simulated = [
+        *observers.choice.settings(("simulation", "choice")),
+        *observers.rating.settings(("simulation", "rating")),
+    ]
+    for given in [*settings_of(study), *simulated]:
+        for mistake in setting_mistakes(given, factors):
+            found.setdefault(mistake.where, mistake)
+    yield from found.values()
 
 
 def _practice(study: Study) -> Iterator[Mistake]:
@@ -92,45 +113,27 @@ def _practice(study: Study) -> Iterator[Mistake]:
             where: Place = ("practice", i, factor)
             if factor not in study.factors:
                 yield Mistake(where, no_such(factor, study.factors, "factor"), on_key=True)
-            elif all(isinstance(known, (int, float)) for known in study.factors[factor]):
-                if isinstance(level, bool) or not isinstance(level, (int, float)) or not math.isfinite(level):
-                    yield Mistake(where, f"{level!r} is not a number")
-                elif level <= 0:
-                    yield Mistake(where, f"{level} must be more than 0")
-            elif all(isinstance(known, str) for known in study.factors[factor]) and not isinstance(level, str):
-                yield Mistake(where, f"{level!r} is not a name")
+            else:
+                yield from _training_level(study, factor, level, where)
 
 
-def _range(study: Study) -> Iterator[Mistake]:
-    reach = study.task.range
-    if reach.minimum >= reach.maximum:
-        yield Mistake(("task", "range"), f"minimum {reach.minimum:g} is not below maximum {reach.maximum:g}")
+def _training_level(study: Study, factor: str, level: Any, where: Place) -> Iterator[Mistake]:
+    """A training trial may have levels of its own, of the kind that the factor has and the settings take."""
+    if all(isinstance(known, (int, float)) for known in study.factors[factor]):
+        if isinstance(level, bool) or not isinstance(level, (int, float)) or not math.isfinite(level):
+            yield Mistake(where, f"{level!r} is not a number")
+            return
+    elif all(isinstance(known, str) for known in study.factors[factor]) and not isinstance(level, str):
+        yield Mistake(where, f"{level!r} is not a name")
         return
-    inside = f"outside the range {reach.minimum:g} to {reach.maximum:g} steps/min of task.range"
-    start = study.task.start
-    if isinstance(start, str):
-        for i, level in enumerate(study.factors.get(start[1:], [])):
-            if isinstance(level, (int, float)) and not reach.minimum <= level <= reach.maximum:
-                yield Mistake(("factors", start[1:], i), f"{level} is {inside}")
-        for i, trial in enumerate(study.practice):
-            given = trial.levels.get(start[1:])
-            if isinstance(given, (int, float)) and not reach.minimum <= given <= reach.maximum:
-                yield Mistake(("practice", i, start[1:]), f"{given} is {inside}")
-    elif not reach.minimum <= start <= reach.maximum:
-        yield Mistake(("task", "start"), f"{start:g} is {inside}")
-    keys = study.task.keys
-    told = " ".join(page.text for page in [*study.pages.instructions, study.pages.before_practice] if page)
-    if keys.counterbalanced and not ("{lower}" in told and "{raise}" in told):
-        message = "the instructions must name the keys as {lower} and {raise}, which differ between participants"
-        yield Mistake(("task", "keys", "counterbalanced"), message)
-    used: dict[str, str] = {}
-    for name, key in (("lower", keys.lower), ("raise", keys.raise_), ("confirm", keys.confirm),
-                      ("break", keys.take_break)):  # fmt: skip
-        if key == "escape":
-            yield Mistake(("task", "keys", name), "escape is kept for the pause page; choose another key")
-        if key in used:
-            yield Mistake(("task", "keys", name), f"{key} is also the key for {used[key]}; choose another")
-        used[key] = name
+    for setting, place, kind in settings_of(study):
+        if setting == f"${factor}":
+            yield from unfit(level, kind, where, place)
+            return
+        if factor in references(setting) and level not in study.factors[factor]:
+            known = ", ".join(map(str, study.factors[factor]))
+            yield Mistake(where, f"{level} has no value in {'.'.join(map(str, place))}; levels: {known}")
+            return
 
 
 def _choices(study: Study) -> dict[str, ChoiceQuestion]:
@@ -162,8 +165,6 @@ def _questions(study: Study) -> Iterator[Mistake]:
             where = ("participants", "questions", i, "minimum")
             yield Mistake(where, f"{question.minimum} is above maximum {question.maximum}")
     if "preferred_walk_ratio" in study.simulation.model_fields_set:
-        actor = study.stimulus.actor
-        actors = study.factors.get(actor[1:], []) if actor.startswith("$") else [actor]
-        for name in actors:
-            if str(name) not in study.simulation.preferred_walk_ratio:
+        for name in sorted({walk.actor for walk in _walks(study, conditions(study))}):
+            if name not in study.simulation.preferred_walk_ratio:
                 yield Mistake(("simulation", "preferred_walk_ratio"), f"actor {name} is missing", on_key=True)

@@ -35,6 +35,11 @@ class Trial:
     group: Mapping[str, str] = field(default_factory=dict)
     track: int = 0
 
+    @property
+    def values(self) -> dict[str, Level]:
+        """Everything that a `$factor` may name in this trial: the levels and the assigned group's."""
+        return {**self.group, **self.levels}
+
 
 def conditions(study: Study) -> Conditions:
     """Every combination of the factors' levels, first factor slowest."""

@@ -9,9 +9,9 @@ from random import Random
 
 from protocols.design import Conditions, blocks_of, limits_of
 from protocols.limits import Limit, limited_order
+from protocols.mistake import Mistake, Place
 from protocols.order import ListOrder
 from protocols.study import Study
-from protocols.study_file import Mistake, Place
 
 QUICK = 4
 """Searches begun for each loosened limit that is tried out."""

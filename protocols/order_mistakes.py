@@ -6,10 +6,9 @@ from collections.abc import Iterator
 
 from protocols.condition import read_condition
 from protocols.feasibility import order_limits_mistakes
+from protocols.mistake import Mistake, Place, no_such
 from protocols.order import AdaptiveOrder, ListOrder, QuestPlusRule
-from protocols.planned_analysis import RESPONSE_COLUMNS, no_such
 from protocols.study import ChoiceQuestion, Study
-from protocols.study_file import Mistake, Place
 
 LARGEST_SQUARE = 100
 """Parts of the largest square: more are a slip, as every participant would see another order anyway."""
@@ -72,8 +71,8 @@ def _adaptive(study: Study, order: AdaptiveOrder) -> Iterator[Mistake]:
             listed = ", ".join(str(level) for level in levels)
             yield Mistake(("order", "rule", "start", i), f"{start:g} is no level of {order.of}; there are: {listed}")
     condition = read_condition(order.yes)
-    columns = [*RESPONSE_COLUMNS, *study.factors]
-    if condition is not None and study.task.kind == "adjustment":
+    columns = [*study.task.responses, "response_time", *study.factors]
+    if condition is not None:
         for column in [condition.column, *([condition.value[1:]] if condition.value.startswith("$") else [])]:
             if column not in columns:
                 yield Mistake(("order", "yes"), no_such(column, columns, "factor or part of a response"))

@@ -10,9 +10,11 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from protocols.adaptive import Tracks, begin_tracks
-from protocols.adjustment import AdjustmentTask
 from protocols.design import Trial, make_trials, practice_trials
-from protocols.study import Level, Pages, Question, Study, TextPage
+from protocols.sides import balanced_orders
+from protocols.stimulus import Walk
+from protocols.study import Pages, Question, Study, TextPage
+from protocols.task import Setup, TaskTrial
 
 QUESTIONS_PER_PAGE = 4
 
@@ -36,9 +38,14 @@ class QuestionsStep:
 
 @dataclass(frozen=True)
 class TrialStep:
-    """One trial of the task; attempt counts how often it has been begun, from 1."""
+    """One trial of the task.
+
+    order: names of its alternatives from left to right or first to last, ("",) where there is only one walk.
+    attempt: how often it has been begun, from 1.
+    """
 
     trial: Trial
+    order: tuple[str, ...] = ("",)
     attempt: int = 1
 
     @property
@@ -54,14 +61,37 @@ Step = TextStep | QuestionsStep | TrialStep
 class Plan:
     """Everything one participant will go through, in order.
 
+    keys: what each of the task's keys is for this participant; total: trials of the experiment.
     tracks: of an adaptive order, by number, after the answers of the trials that are no longer in the steps.
     """
 
     study: Study
     steps: tuple[Step, ...]
-    task: AdjustmentTask
+    keys: Mapping[str, str]
     total: int
     tracks: Tracks = field(default_factory=dict)
+
+    def begin(self, step: TrialStep) -> TaskTrial:
+        """The trial of a step, waiting for its first frame."""
+        task = self.study.task
+        question = with_keys(task.asked, self.keys, self.study)
+        return task.begin(Setup(walks_of(self.study, step), step.trial.values, self.keys, question))
+
+
+def walks_of(study: Study, step: TrialStep) -> dict[str, Walk]:
+    """Name to walk of the alternatives of a trial, in the order they are shown."""
+    walks = study.task.walks(study.stimulus, step.trial.values)
+    return {name: walks[name] for name in step.order}
+
+
+def _with_orders(study: Study, trials: list[Trial], seed: int) -> list[TrialStep]:
+    if not trials:
+        return []
+    task = study.task
+    names = list(task.walks(study.stimulus, trials[0].values))
+    kind = "practice" if trials[0].practice else "trials"
+    orders = balanced_orders(trials, names, f"{study.study}/sides/{kind}/{seed}") if task.balanced else None
+    return [TrialStep(trial, orders[i] if orders else tuple(names)) for i, trial in enumerate(trials)]
 
 
 def make_plan(study: Study, seed: int, participant_number: int, group: Mapping[str, str] | None = None) -> Plan:
@@ -69,60 +99,50 @@ def make_plan(study: Study, seed: int, participant_number: int, group: Mapping[s
 
     group: levels of the between-participant factors that the program assigned.
     """
-    trials = make_trials(study, seed, participant_number, group)
-    pages = _with_keys(study, keys_of(study, participant_number))
+    trials = _with_orders(study, make_trials(study, seed, participant_number, group), seed)
+    practice = _with_orders(study, practice_trials(study, group), seed)
+    keys = study.task.keys_for(participant_number)
+    pages = _with_keys(study, keys)
     steps: list[Step] = [TextStep("consent", pages.consent, "consent")]
     asked = study.participants.questions
     for i in range(0, len(asked), QUESTIONS_PER_PAGE):
         number = i // QUESTIONS_PER_PAGE + 1
         steps.append(QuestionsStep(f"questions-{number}", tuple(asked[i : i + QUESTIONS_PER_PAGE])))
     steps += [TextStep(f"instructions-{i}", page) for i, page in enumerate(pages.instructions, start=1)]
-    practice = practice_trials(study, group)
     if practice and pages.before_practice is not None:
         steps.append(TextStep("before-practice", pages.before_practice))
-    steps += [TrialStep(trial) for trial in practice]
+    steps += practice
     if pages.before_trials is not None:
         steps.append(TextStep("before-trials", pages.before_trials))
-    for trial in trials:
-        steps.append(TrialStep(trial))
-        if study.breaks is not None and trial.number % study.breaks.every == 0 and trial.number < len(trials):
-            steps.append(_break_step(study, trial.number, len(trials)))
+    for step in trials:
+        steps.append(step)
+        done = step.trial.number
+        if study.breaks is not None and done % study.breaks.every == 0 and done < len(trials):
+            steps.append(_break_step(study, done, len(trials)))
     steps.append(TextStep("debrief", pages.debrief, "debrief"))
-    return Plan(study, tuple(steps), _task(study, participant_number), len(trials), begin_tracks(study))
-
-
-def value_of(setting: str | float, trial: Trial) -> Level:
-    """A stimulus or task setting in one trial: `$factor` becomes that factor's level, or the assigned group's."""
-    if isinstance(setting, str) and setting.startswith("$"):
-        return {**trial.group, **trial.levels}[setting[1:]]
-    return setting
+    return Plan(study, tuple(steps), keys, len(trials), begin_tracks(study))
 
 
 KEY_LABELS = {"left": "←", "right": "→", "up": "↑", "down": "↓"}
 """How keys are called on a page, unless the study's words say otherwise; others by their name, as Enter or B."""
 
 
-def keys_of(study: Study, participant_number: int) -> dict[str, str]:
-    """What lower, raise, confirm and break are for a participant, whose number decides counterbalanced keys."""
-    keys = study.task.keys
-    lower, raise_ = keys.lower, keys.raise_
-    if keys.counterbalanced and participant_number % 2 == 0:
-        lower, raise_ = raise_, lower
-    return {"lower": lower, "raise": raise_, "confirm": keys.confirm, "break": keys.take_break}
+def with_keys(text: str, keys: Mapping[str, str], study: Study) -> str:
+    """A text with {break} and the names of the task's keys, as {lower} or {first}, replaced by what they are called."""
+    labels: dict[str, str] = {**KEY_LABELS}
+    labels.update(study.words.keys.items())
+    for name, key in keys.items():
+        text = text.replace(f"{{{name}}}", labels.get(key, key.capitalize()))
+    return text
 
 
 def _with_keys(study: Study, keys: Mapping[str, str]) -> Pages:
-    """The study's pages with {lower}, {raise}, {confirm} and {break} replaced by this participant's keys."""
-    labels: dict[str, str] = {**KEY_LABELS}
-    labels.update(study.words.keys.items())
-
-    def filled(text: str) -> str:
-        for name, key in keys.items():
-            text = text.replace(f"{{{name}}}", labels.get(key, key.capitalize()))
-        return text
+    """The study's pages with this participant's keys."""
 
     def page(old: TextPage | None) -> TextPage | None:
-        return None if old is None else TextPage(title=filled(old.title), text=filled(old.text))
+        if old is None:
+            return None
+        return TextPage(title=with_keys(old.title, keys, study), text=with_keys(old.text, keys, study))
 
     pages = study.pages
     return pages.model_copy(
@@ -138,16 +158,3 @@ def _break_step(study: Study, done: int, total: int) -> TextStep:
     assert study.breaks is not None
     text = study.breaks.text.replace("{done}", str(done)).replace("{total}", str(total))
     return TextStep(f"break-{done}", TextPage(title=study.breaks.title, text=text), "break")
-
-
-def _task(study: Study, participant_number: int) -> AdjustmentTask:
-    task, keys = study.task, keys_of(study, participant_number)
-    return AdjustmentTask(
-        minimum=task.range.minimum,
-        maximum=task.range.maximum,
-        rate=task.rate,
-        minimum_looking_time=task.minimum_looking_time,
-        lower_key=keys["lower"],
-        raise_key=keys["raise"],
-        confirm_key=keys["confirm"],
-    )

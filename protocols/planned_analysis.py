@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Iterable, Iterator
 
+from protocols.mistake import Mistake, Place, no_such
 from protocols.study import FurtherAnalysis, Level, Study
-from protocols.study_file import Mistake, Place
-
-RESPONSE_COLUMNS = ("walk_ratio", "step_frequency", "step_length", "response_time")
-"""Columns of a trial that an exclusion may name, besides the factors and the frame counts."""
-
 
 TABLE_COLUMNS = ("study", "participant", "run", "trial", "block", "repetition")
 """Columns that every table of trials has."""
-
-
-def no_such(name: str, known: Iterable[str], what: str) -> str:
-    """The sentence for a name that is not known: the nearest one that is, or all of them."""
-    known = list(known)
-    near = difflib.get_close_matches(name, known, n=1)
-    way = f"did you mean {near[0]}?" if near else f"there are: {', '.join(known) or 'none'}"
-    return f"{name} is no {what}; {way}"
 
 
 def analysis_mistakes(study: Study) -> Iterator[Mistake]:
@@ -40,7 +27,7 @@ def analysis_mistakes(study: Study) -> Iterator[Mistake]:
         yield from _equivalence_and_regression(study, plan, at)
         yield from _figures(study, plan, at)
     columns = [
-        *RESPONSE_COLUMNS,
+        *_columns(study),
         *within_factors(study),
         *study.participants.between,
         "late_frames",
@@ -53,6 +40,11 @@ def analysis_mistakes(study: Study) -> Iterator[Mistake]:
         for i, test in enumerate(plan.t_tests):
             if test.where is not None:
                 yield from _condition(test.where, (*at, "t_tests", i, "where"), columns)
+
+
+def _columns(study: Study) -> tuple[str, ...]:
+    """Columns that the answer to a trial fills."""
+    return (*study.task.responses, "response_time")
 
 
 def within_factors(study: Study) -> dict[str, list[Level]]:
@@ -70,7 +62,7 @@ def _condition(text: str, where: Place, columns: Iterable[str]) -> Iterator[Mist
 
 
 def _groups(study: Study) -> Iterator[Mistake]:
-    taken = {*study.factors, *(q.id for q in study.participants.questions), *RESPONSE_COLUMNS, *TABLE_COLUMNS}
+    taken = {*study.factors, *(q.id for q in study.participants.questions), *_columns(study), *TABLE_COLUMNS}
     for name, groups in study.analysis.groups.items():
         where: Place = ("analysis", "groups", name)
         if name in taken:
@@ -99,18 +91,20 @@ def _covered(study: Study, where: Place, given: Iterable[str], factor: str, what
 
 def _measure(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
     actor = study.stimulus.actor
+    if plan.measure not in study.task.measures:
+        given = ", ".join(study.task.measures)
+        message = f"{plan.measure} is not what {study.task.kind} trials give; they give {given}"
+        yield Mistake((*at, "measure"), message)
+        return
     if plan.measure != "normalised_walk_ratio":
         if plan.heights is not None:
             yield Mistake((*at, "heights"), f"{plan.measure} needs no heights; remove them", on_key=True)
     elif plan.heights is None:
         yield Mistake((*at, "measure"), "normalised_walk_ratio needs heights: the height of every actor in m")
-    elif actor.startswith("$") and actor[1:] in study.factors:
+    elif isinstance(actor, str) and actor.startswith("$") and actor[1:] in study.factors:
         yield from _covered(study, (*at, "heights"), plan.heights, actor[1:], "the height")
-    elif not actor.startswith("$") and actor not in plan.heights:
+    elif isinstance(actor, str) and not actor.startswith("$") and actor not in plan.heights:
         yield Mistake((*at, "heights"), f"the height of {actor} is missing")
-    if plan.measure == "confusion_rate" and study.task.kind == "adjustment":
-        message = "confusion_rate needs trials in which one of two walks is chosen; in adjustment trials none is"
-        yield Mistake((*at, "measure"), message)
 
 
 def _factors_of_tests(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:

@@ -21,8 +21,8 @@ FORMAT = 1
 class Header:
     """The first line of a journal: what is needed to read, repeat and cite the run.
 
-    participant_number: order of arrival, from 1, places given back first; keys: what lower, raise, confirm and
-    break were for this participant.
+    participant_number: order of arrival, from 1, places given back first; keys: what each of the task's keys was for
+    this participant.
     walkers: actor to where the walk comes from: captured, modelled, or how much of each.
     pilot: a trial run of the study itself, whose data must never stand among real ones.
     group: level of every between-participant factor that the program assigned.
@@ -97,6 +97,17 @@ class Key:
 
 
 @dataclass(frozen=True)
+class Click:
+    """A click of the pointer during a trial on something that answers; target as `scale:3`."""
+
+    kind = "click"
+    time: float
+    trial: int
+    practice: bool
+    target: str
+
+
+@dataclass(frozen=True)
 class TrialBegun:
     """The first frame of a trial was shown."""
 
@@ -114,8 +125,11 @@ class TrialRecord:
 
     onset, time:   s on the run's clock: first frame and confirmation.
     response_time: s of looking between them, pauses excluded.
-    response:      step_frequency (steps/min), step_length (m), walk_ratio (m·min).
-    measured:      the same and speed (m/s), measured from the walker as drawn at the response; empty if undrawn.
+    response:      of an adjustment, step_frequency (steps/min), step_length (m), walk_ratio (m·min); of a choice,
+                   chosen, side, which alternative was where, original, correct (1 or 0), views; of a rating, rating
+                   and views.
+    measured:      step_frequency, step_length, walk_ratio and speed (m/s) of the walker as drawn at the response;
+                   those of the second of two are called beside_speed and so on; empty if undrawn.
     frames, late_frames: frames shown and those later than 1.5 refresh periods.
     track:         of an adaptive order, the track whose answers placed the level, from 1; else 0.
     """
@@ -128,7 +142,7 @@ class TrialRecord:
     block: int
     repetition: int
     factors: Mapping[str, Level]
-    response: Mapping[str, float]
+    response: Mapping[str, Level]
     onset: float
     response_time: float
     key_presses: int
@@ -220,7 +234,7 @@ class Withdrawn:
 
 
 Record = (
-    Header | Consented | Answered | PageShown | Key | TrialBegun | TrialRecord
+    Header | Consented | Answered | PageShown | Key | Click | TrialBegun | TrialRecord
     | Paused | Resumed | FrameLog | Continued | Ended | Withdrawn
 )  # fmt: skip
 

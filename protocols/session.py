@@ -9,14 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from protocols import adjustment
 from protocols.adaptive import Tracks, after_response, placed
-from protocols.adjustment import AdjustmentTrial
-from protocols.events import Closed, Event, FocusLost, KeyDown, KeyUp, Saved, Shown
+from protocols.events import Clicked, Closed, Event, FocusLost, KeyDown, KeyUp, Saved, Shown
 from protocols.form import Choice, Entry, Form, handle_form
-from protocols.plan import Plan, QuestionsStep, Step, TextStep, TrialStep, value_of
+from protocols.plan import Plan, QuestionsStep, Step, TextStep, TrialStep
 from protocols.record import (
     Answered,
+    Click,
     Consented,
     Ended,
     Key,
@@ -28,6 +27,7 @@ from protocols.record import (
     TrialRecord,
 )
 from protocols.study import ChoiceQuestion, NumberQuestion, Question, TextPage
+from protocols.task import TaskTrial
 
 UNREAD = 0.25
 """s after a page appears in which keys do nothing, so that pressing Enter twice leaves no page unseen."""
@@ -62,7 +62,7 @@ class Session:
 
     plan: Plan
     index: int
-    stage: Form | AdjustmentTrial | Interval
+    stage: Form | TaskTrial | Interval
     shown: float | None = None
     overlay: Overlay | None = None
     pauses: int = 0
@@ -81,9 +81,9 @@ class Session:
         return bool(self.ended)
 
     @property
-    def trial(self) -> AdjustmentTrial | None:
+    def trial(self) -> TaskTrial | None:
         """The trial that is on, or None."""
-        return self.stage if isinstance(self.stage, AdjustmentTrial) else None
+        return None if isinstance(self.stage, (Form, Interval)) else self.stage
 
 
 def begin(plan: Plan) -> Session:
@@ -100,8 +100,8 @@ def advance(session: Session, until: float) -> Session:
     """The session at time `until` (s) when no event has happened since."""
     if session.done or session.overlay is not None:
         return session
-    if isinstance(session.stage, AdjustmentTrial):
-        return replace(session, stage=adjustment.advance(session.stage, until))
+    if session.trial is not None:
+        return replace(session, stage=session.trial.advance(until))
     if isinstance(session.stage, Interval) and session.stage.saved and until >= session.stage.until:
         return _entered(session, session.index + 1, until)
     return session
@@ -124,11 +124,11 @@ def handle(session: Session, event: Event) -> Session:
         return _overlaid(session, session.overlay, event)
     if isinstance(event, KeyDown) and event.key == "escape" and not _last_page(session):
         return _paused(session, event, "pause")
-    in_trials = isinstance(session.stage, (AdjustmentTrial, Interval))
-    if isinstance(event, KeyDown) and event.key == session.plan.study.task.keys.take_break and in_trials:
+    in_trials = not isinstance(session.stage, Form)
+    if isinstance(event, KeyDown) and event.key == session.plan.keys["break"] and in_trials:
         return _paused(session, event, "break")
-    if isinstance(session.stage, AdjustmentTrial):
-        return _in_trial(session, session.stage, event)
+    if session.trial is not None:
+        return _in_trial(session, session.trial, event)
     if isinstance(session.stage, Form):
         return _on_page(session, session.stage, event)
     return session
@@ -159,11 +159,10 @@ def _placed(session: Session, index: int) -> Session:
     return replace(session, plan=replace(session.plan, steps=(*steps[:index], step, *steps[index + 1 :])))
 
 
-def _stage(plan: Plan, index: int) -> Form | AdjustmentTrial:
+def _stage(plan: Plan, index: int) -> Form | TaskTrial:
     step, words = plan.steps[index], plan.study.words
     if isinstance(step, TrialStep):
-        speed = float(value_of(plan.study.stimulus.speed, step.trial))
-        return adjustment.begin(plan.task, speed, float(value_of(plan.study.task.start, step.trial)))
+        return plan.begin(step)
     if isinstance(step, QuestionsStep):
         return Form(
             fields=tuple(_field(question) for question in step.questions),
@@ -206,10 +205,10 @@ def _seen(session: Session, event: Shown) -> Session:
         return session
     session = replace(session, shown=event.time)
     step = session.step
-    if isinstance(session.stage, AdjustmentTrial) and isinstance(step, TrialStep):
+    if session.trial is not None and isinstance(step, TrialStep):
         trial = step.trial
         begun = TrialBegun(event.time, trial.number, trial.practice, step.attempt, trial.levels)
-        session = _emit(replace(session, stage=adjustment.handle(session.stage, event)), begun)
+        session = _emit(replace(session, stage=session.trial.handle(event)), begun)
     return session
 
 
@@ -260,17 +259,16 @@ def _farewell(session: Session, time: float, reason: str, page: TextPage) -> Ses
 # Trials
 
 
-def _in_trial(session: Session, trial: AdjustmentTrial, event: Event) -> Session:
+def _in_trial(session: Session, trial: TaskTrial, event: Event) -> Session:
     step = session.step
     assert isinstance(step, TrialStep)
-    if isinstance(event, (KeyDown, KeyUp)) and trial.stage is adjustment.Stage.ADJUSTING:
-        task = trial.task
-        if event.key in (task.lower_key, task.raise_key, task.confirm_key):
-            down = isinstance(event, KeyDown)
-            session = _emit(session, _key_record(step, event, down))
+    if trial.hears(event) and isinstance(event, (KeyDown, KeyUp)):
+        session = _emit(session, _key_record(step, event, isinstance(event, KeyDown)))
+    elif trial.hears(event) and isinstance(event, Clicked):
+        session = _emit(session, Click(event.time, step.trial.number, step.trial.practice, event.target))
     if isinstance(event, FocusLost) and trial.held:
         session = _emit(session, Key(event.time, step.trial.number, step.trial.practice, "focus", False))
-    trial = adjustment.handle(trial, event)
+    trial = trial.handle(event)
     session = replace(session, stage=trial)
     if not trial.done:
         return session
@@ -290,7 +288,7 @@ def _key_record(step: TrialStep, event: KeyDown | KeyUp, down: bool) -> Key:
     return Key(event.time, trial.number, trial.practice, event.key, down, event.source, event.uncertainty_ms)
 
 
-def _trial_record(session: Session, step: TrialStep, trial: AdjustmentTrial, time: float) -> TrialRecord:
+def _trial_record(session: Session, step: TrialStep, trial: TaskTrial, time: float) -> TrialRecord:
     return TrialRecord(
         time=time,
         number=step.trial.number,
@@ -299,16 +297,12 @@ def _trial_record(session: Session, step: TrialStep, trial: AdjustmentTrial, tim
         block=step.trial.block,
         repetition=step.trial.repetition,
         factors=step.trial.levels,
-        response={
-            "step_frequency": trial.setting,
-            "step_length": trial.step_length,
-            "walk_ratio": trial.walk_ratio,
-        },
+        response=trial.response,
         onset=trial.onset,
         response_time=trial.looked,
-        key_presses=trial.key_presses,
-        reversals=trial.reversals,
-        early_confirms=trial.early_confirms,
+        key_presses=trial.counts["key_presses"],
+        reversals=trial.counts["reversals"],
+        early_confirms=trial.counts["early_confirms"],
         pauses=session.pauses,
         track=step.trial.track,
     )
@@ -320,9 +314,7 @@ def _trial_record(session: Session, step: TrialStep, trial: AdjustmentTrial, tim
 def _paused(session: Session, event: KeyDown, why: str) -> Session:
     words = session.plan.study.words
     buttons = (("resume", words.resume), ("stop", words.stop)) if why == "pause" else (("resume", words.resume),)
-    stage = session.stage
-    if isinstance(stage, AdjustmentTrial):
-        stage = replace(adjustment.advance(stage, event.time), held=frozenset())
+    stage = session.stage if session.trial is None else session.trial.advance(event.time).paused()
     overlay = Overlay(why, event.time, Form(buttons=buttons, focus=0))
     session = replace(session, stage=stage, overlay=overlay, pauses=session.pauses + 1)
     return _emit(session, Paused(event.time, why))
@@ -345,9 +337,7 @@ def _overlaid(session: Session, overlay: Overlay, event: Event) -> Session:
 
 
 def _resumed(session: Session, overlay: Overlay, time: float) -> Session:
-    stage = session.stage
-    if isinstance(stage, AdjustmentTrial):
-        stage = adjustment.resumed(stage, time)
+    stage = session.stage if session.trial is None else session.trial.resumed(time)
     if isinstance(stage, Interval):
         stage = replace(stage, until=max(stage.until, time))
     return _emit(replace(session, stage=stage, overlay=None), Resumed(time, time - overlay.since))

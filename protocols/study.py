@@ -9,9 +9,16 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
+from protocols.adjustment_part import Adjustment
+from protocols.choice_part import Choice
 from protocols.order import ListOrder, Order
-from protocols.parts import Key, Level, Name, Number, Part, Reference, Speed, StepFrequency, Text
-from protocols.viewing import Appearance, Display
+from protocols.parts import Key, Level, Name, Number, Part, Text
+from protocols.rating_part import Rating
+from protocols.simulated import ChoosingObservers, RatingObservers
+from protocols.stimulus import Stimulus
+from protocols.viewing import Display
+
+Task = Annotated[Adjustment | Choice | Rating, Field(discriminator="kind")]
 
 
 class TextPage(Part):
@@ -82,44 +89,6 @@ class Practice(Part):
         return dict(self.model_extra or {})
 
 
-class Stimulus(Appearance):
-    """What walks: each value is a constant or `$factor`, the level of that factor in the trial."""
-
-    actor: Text = Field(description="An actor's name, or $factor.")
-    speed: Reference | Speed = Field(description="Walking speed, m/s, or $factor.")
-    body: Text | None = Field(None, description="A body's name or $factor; the actor's own when left out.")
-
-
-class AdjustmentKeys(Part):
-    """Keys of the adjustment task."""
-
-    lower: Key = "left"
-    raise_: Key = Field("right", alias="raise")
-    confirm: Key = "enter"
-    take_break: Key = Field("b", alias="break")
-    counterbalanced: bool = Field(False, description="Swap lower and raise for every second participant.")
-
-
-class AdjustmentRange(Part):
-    """The step frequencies the participant can reach."""
-
-    minimum: StepFrequency = Field(80.0, description="steps/min")
-    maximum: StepFrequency = Field(120.0, description="steps/min")
-
-
-class Adjustment(Part):
-    """Method of adjustment: hold a key to change step frequency at constant speed, confirm when most natural."""
-
-    kind: Literal["adjustment"]
-    start: Reference | StepFrequency = Field(description="Step frequency at onset, steps/min, or $factor.")
-    range: AdjustmentRange = AdjustmentRange()
-    rate: float = Field(10.0, strict=True, gt=0.0, le=200.0, description="steps/min per second of holding.")
-    minimum_looking_time: float = Field(
-        1.0, strict=True, ge=0.0, le=60.0, description="s before the confirm key is accepted."
-    )
-    keys: AdjustmentKeys = AdjustmentKeys()
-
-
 class Breaks(Part):
     """When the participant is offered a rest."""
 
@@ -131,8 +100,8 @@ class Breaks(Part):
 class Pages(Part):
     """What the participant reads.
 
-    In instructions, before_practice and before_trials, {lower}, {raise}, {confirm} and {break} become the
-    participant's own keys.
+    In instructions, before_practice and before_trials, {break} and the names of the task's keys, as {lower}, {raise}
+    and {confirm}, or {first}, {second} and {replay}, become the participant's own keys.
     """
 
     consent: TextPage
@@ -171,6 +140,7 @@ class Words(Part):
     welcome_back: Text = "Welcome back"
     welcome_back_text: Text = "You will go on where you left off: trial {next} of {total}."
     finished_hint: Text = "Press Enter to close"
+    rating_hint: Text = "Choose with the arrow keys or the pointer, then press Enter"
     trial_caption: str = Field("", description="A line under the walker during trials.")
     keys: dict[Key, Text] = Field(default_factory=dict, description="What keys are called on pages, as enter: Entrée.")
 
@@ -268,11 +238,13 @@ class FurtherAnalysis(Part):
     """One measure and what is computed of it."""
 
     measure: Literal[
-        "walk_ratio", "step_frequency", "step_length", "response_time", "normalised_walk_ratio", "confusion_rate"
+        "walk_ratio", "step_frequency", "step_length", "response_time", "normalised_walk_ratio", "confusion_rate",
+        "correct", "rating",
     ] = Field(
         "walk_ratio",
-        description="normalised_walk_ratio needs heights; confusion_rate (%) needs trials in which one walk is chosen.",
-    )
+        description="normalised_walk_ratio needs heights; confusion_rate (%) and correct (0 or 1) need trials in which "
+        "one of two is chosen, rating (of the scale) those in which one is rated.",
+    )  # fmt: skip
     label: Text = "Walk ratio"
     unit: str = "m·min"
     heights: dict[str, Annotated[float, Field(strict=True, ge=0.5, le=2.5)]] | None = Field(
@@ -347,6 +319,8 @@ class Simulation(Part):
         lt=1.0,
         description="Share of the way back to the start value at which to stop.",
     )
+    choice: ChoosingObservers = Field(ChoosingObservers(), description="Of a choice task.")
+    rating: RatingObservers = Field(RatingObservers(), description="Of a rating task.")
 
 
 class Resume(Part):
@@ -390,7 +364,7 @@ class Study(Part):
     resume: Resume = Resume()
     display: Display | None = Field(None, description="Screen and viewing distance, for true angles and perspective.")
     stimulus: Stimulus
-    task: Adjustment
+    task: Task
     interval: float = Field(0.5, strict=True, ge=0.1, le=10.0, description="s of empty screen between trials.")
     pages: Pages
     words: Words = Words()

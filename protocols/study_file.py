@@ -12,33 +12,16 @@ from dataclasses import dataclass
 from importlib.resources import files
 from io import StringIO
 from pathlib import Path
-from typing import Any
+from types import UnionType
+from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
+from protocols.mistake import Mistake, Place
+from protocols.setting import CONSTANT, FACTOR, TABLE
 from protocols.study import Study
 
-Place = tuple[str | int, ...]
-
 MISSING = "this key is missing"
-
-ORDER_TAGS = {"random", "blocked", "sequential", "latin_square", "balanced_latin_square", "adaptive", "staircase",
-              "weighted", "quest_plus"}  # fmt: skip
-"""Kinds of order, which pydantic puts into the place of a mistake although they are no keys of the file."""
-
-
-@dataclass(frozen=True)
-class Mistake:
-    """One thing wrong in a study file.
-
-    where: keys and list positions from the top, as ("factors", "speed", 0); on_key: the key itself is at fault.
-    """
-
-    where: Place
-    message: str
-    on_key: bool = False
-    line: int = 1
-    column: int = 1
 
 
 class StudyFileError(ValueError):
@@ -122,7 +105,7 @@ def parse_study(name: str, text: str) -> StudyFile:
     try:
         study = Study.model_validate(_plain(document))
     except ValidationError as error:
-        mistakes = _without_echoes([_explain(e) for e in error.errors(include_url=False)])
+        mistakes = _without_echoes([_explain(e, document) for e in error.errors(include_url=False)])
         raise StudyFileError(name, [_placed(document, m) for m in mistakes]) from None
     return StudyFile(name, text, study, document)
 
@@ -176,14 +159,14 @@ def _plain(node: Any) -> Any:
     return node
 
 
-def _explain(error: Any) -> Mistake:
+def _explain(error: Any, document: Any) -> Mistake:
     """One of pydantic's errors in the words of an experimenter."""
-    where: Place = tuple(part for part in error["loc"] if not _is_type_tag(part))
+    where = _place(document, error["loc"])
     kind, limits = error["type"], error.get("ctx") or {}
     value = limits.get("tag", error["input"])
     shown = repr(value) if len(repr(value)) <= 60 else repr(value)[:57] + "..."
     if kind == "extra_forbidden":
-        allowed = _allowed_keys(where[:-1])
+        allowed = _allowed_keys(document, where[:-1])
         near = difflib.get_close_matches(str(where[-1]), allowed, n=1, cutoff=0.6)
         way = f"did you mean {near[0]}?" if near else f"allowed here: {', '.join(allowed)}"
         return Mistake(where, f"unknown key; {way}", on_key=True)
@@ -216,34 +199,67 @@ def _without_echoes(mistakes: Sequence[Mistake]) -> list[Mistake]:
     return [m for m in mistakes if m.message != MISSING or (m.where[:-1], m.where[-1]) not in meant]
 
 
-def _is_type_tag(part: Any) -> bool:
-    """True for the branch names that pydantic puts into the location of a union (not keys of the file)."""
-    return isinstance(part, str) and (
-        part in {"choice", "number", "text", "str", "float", "int", "[key]"} - {"text"}
-        or part in ORDER_TAGS
-        or part.startswith(("constrained-", "function-"))
-    )
+TYPE_TAGS = {"str", "float", "int", "[key]", FACTOR, TABLE, CONSTANT}
 
 
-def _allowed_keys(where: Place) -> list[str]:
-    """Keys that may stand at a place of the study file; where there are several kinds of part, those of all."""
-    models: list[Any] = [Study]
+def _place(document: Any, location: Iterable[str | int]) -> Place:
+    """Pydantic's location without the branches of unions, which are no keys of the file."""
+    where: list[str | int] = []
+    node = document
+    for part in location:
+        if isinstance(node, dict) and "kind" in node and node["kind"] == part:
+            continue
+        if isinstance(part, str) and (part in TYPE_TAGS or part.startswith(("constrained-", "function-"))):
+            continue
+        where.append(part)
+        node = _at(node, part)
+    return tuple(where)
+
+
+def _at(node: Any, part: str | int) -> Any:
+    try:
+        return node[part]
+    except (KeyError, IndexError, TypeError):
+        return None
+
+
+def _allowed_keys(document: Any, where: Place) -> list[str]:
+    """Keys that may stand at a place of the study file; where its kind of part is not known, those of all."""
+    annotation, node = Study, document
     for part in where:
-        if not isinstance(part, int):
-            fields = {f.alias or n: f for model in models for n, f in model.model_fields.items()}
-            models = _models_in(fields[part].annotation) if part in fields else []
+        annotation, node = _inside(annotation, part, node), _at(node, part)
+    models = _models(annotation, node)
     return list(dict.fromkeys(f.alias or n for model in models for n, f in model.model_fields.items()))
 
 
-def _is_model(kind: Any) -> bool:
-    return isinstance(kind, type) and issubclass(kind, BaseModel)
+def _inside(annotation: Any, part: str | int, node: Any) -> Any:
+    """The type of what stands under a key or at a position of a value of a type; None where nothing is known."""
+    for model in _models(annotation, node):
+        for name, field in model.model_fields.items():
+            if part in (name, field.alias):
+                return field.annotation
+    for choice in _choices(annotation):
+        if get_origin(choice) in (dict, list):
+            return get_args(choice)[-1]
+    return None
 
 
-def _models_in(annotation: Any) -> list[Any]:
-    """The study parts named in a type annotation such as list[Part] or Part | OtherPart."""
-    if _is_model(annotation):
-        return [annotation]
-    return [model for argument in getattr(annotation, "__args__", ()) for model in _models_in(argument)]
+def _models(annotation: Any, node: Any) -> list[type[BaseModel]]:
+    """The study parts that a type stands for; of several, the one of the node's kind."""
+    models = [choice for choice in _choices(annotation) if isinstance(choice, type) and issubclass(choice, BaseModel)]
+    kind = _at(node, "kind") if isinstance(node, dict) else None
+    return [
+        m for m in models if "kind" in m.model_fields and kind in get_args(m.model_fields["kind"].annotation)
+    ] or models
+
+
+def _choices(annotation: Any) -> list[Any]:
+    """The types of a union, Annotated unwrapped; the type itself where it is none."""
+    if get_origin(annotation) is Annotated:
+        return _choices(get_args(annotation)[0])
+    if get_origin(annotation) in (Union, UnionType):
+        return [choice for argument in get_args(annotation) for choice in _choices(argument)]
+    return [annotation]
 
 
 def _placed(document: Any, mistake: Mistake) -> Mistake:

@@ -13,8 +13,9 @@ from functools import lru_cache
 from math import ceil, log
 
 from experiment_app.render.page_shapes import PageLayout, PlacedBox, PlacedText, Rectangle, Role
+from experiment_app.render.sliders import PlacedSlider, placed_slider
 from experiment_app.render.text import break_lines, clean, has_direction, is_right_to_left, last_part, width_of
-from experiment_app.scene import Box, Line, Page, Row
+from experiment_app.scene import Box, Line, Page, Row, Slider
 
 TEXT_HEIGHT = 0.026
 """Font size of text, of the window's height: 0.4 degrees of x-height on a 24-inch display at 60 cm."""
@@ -59,6 +60,7 @@ class Block:
     height: int = 0
     texts: tuple[PlacedText, ...] = ()
     boxes: tuple[PlacedBox, ...] = ()
+    sliders: tuple[PlacedSlider, ...] = ()
     rings: tuple[Rectangle, ...] = ()
     signs: tuple[Rectangle, ...] = ()
     track: Rectangle | None = None
@@ -68,7 +70,8 @@ class Block:
 @lru_cache(maxsize=64)
 def layout_page(page: Page, width: int, height: int, pixel_ratio: float) -> PageLayout:
     """A page in a window of width x height device pixels; pixel_ratio is device pixels per ordinary pixel."""
-    settings = _settings(width, height, pixel_ratio, CARD_MEASURE if page.over_scene else MEASURE)
+    measure = WIDE_MEASURE if page.at_bottom else CARD_MEASURE if page.over_scene else MEASURE
+    settings = _settings(width, height, pixel_ratio, measure)
     return _first_complete(lambda setting: _layout(page, width, height, setting), settings)
 
 
@@ -89,7 +92,10 @@ def _first_complete(lay_out: Callable[[Setting], PageLayout], settings: Sequence
 
 
 def hit(layout: PageLayout, x: float, y: float) -> str | None:
-    """The id of the box under a point, or None."""
+    """The id of the box under a point, or of the scale with the value there, as `scale:3`, or None."""
+    for placed in layout.sliders:
+        if placed.rectangle.contains(x, y):
+            return f"{placed.slider.id}:{placed.value_at(x):g}"
     return next((placed.box.id for placed in layout.boxes if placed.rectangle.contains(x, y)), None)
 
 
@@ -124,9 +130,12 @@ def _layout(page: Page, width: int, height: int, setting: Setting) -> PageLayout
     if page.over_scene:
         padding = setting.space(1.8)
         top = max((height - needed) // 2, 0)
+        if page.at_bottom:
+            padding = setting.space(0.9)
+            top = max(height - round(0.03 * height) - padding - needed, 0)
         hint_top = top + content.height + gap
         card = Rectangle(left, top, setting.column, needed).grown(padding) if needed else None
-        complete = needed + 2 * padding <= height
+        complete = needed + 2 * padding <= (0.4 * height if page.at_bottom else height)
     else:
         hint_top = height - margin - hint.height
         top = round(TITLE_TOP * height)
@@ -134,8 +143,8 @@ def _layout(page: Page, width: int, height: int, setting: Setting) -> PageLayout
         top = min(top, max(hint_top - gap - content.height, margin))
     whole = _join([_moved(content, left, top), _moved(hint, left, hint_top)])
     return PageLayout(
-        width, height, setting.text / 10, whole.texts, whole.boxes, whole.rings, whole.signs, whole.track,
-        whole.done, card, complete,
+        width, height, setting.text / 10, whole.texts, whole.boxes, whole.sliders, whole.rings, whole.signs,
+        whole.track, whole.done, card, complete,
     )  # fmt: skip
 
 
@@ -199,10 +208,22 @@ def _row(row: Row, setting: Setting) -> Block:
     if prompt.strip():
         parts.append((0, _text(prompt, "prompt", setting)))
     boxes = _boxes(row.boxes, setting, bool(row.error), to_right)
+    if row.slider is not None:
+        boxes = _scale(row.slider, boxes, setting)
+        boxes = _elsewhere(boxes, lambda at: at.mirrored(setting.column)) if to_right else boxes
     parts.append((setting.space(0.5), boxes))
     if row.error.strip():
         parts.append((setting.space(0.45), _error(clean(row.error), setting)))
     return _stack(parts)
+
+
+def _scale(slider: Slider, boxes: Block, setting: Setting) -> Block:
+    """A scale, and right of it the boxes at the height of its track."""
+    button = _around([placed.rectangle for placed in boxes.boxes])
+    scale, texts, height = placed_slider(slider, setting.column - button.width - setting.space(1.5), setting)
+    place = _mover(setting.column - button.right, (scale.rectangle.height - button.height) // 2)
+    beside = tuple(_box_elsewhere(placed, place) for placed in boxes.boxes)
+    return Block(max(height, button.height), texts, beside, (scale,))
 
 
 def _boxes(boxes: Sequence[Box], setting: Setting, faulty: bool, to_right: bool) -> Block:
@@ -329,6 +350,7 @@ def _join(blocks: Sequence[Block]) -> Block:
         0,
         tuple(text for block in blocks for text in block.texts),
         tuple(box for block in blocks for box in block.boxes),
+        tuple(slider for block in blocks for slider in block.sliders),
         tuple(ring for block in blocks for ring in block.rings),
         tuple(sign for block in blocks for sign in block.signs),
         next((block.track for block in blocks if block.track), None),
@@ -350,6 +372,7 @@ def _elsewhere(block: Block, place: Callable[[Rectangle], Rectangle]) -> Block:
         block.height,
         tuple(replace(text, rectangle=place(text.rectangle)) for text in block.texts),
         tuple(_box_elsewhere(placed, place) for placed in block.boxes),
+        tuple(slider.elsewhere(place) for slider in block.sliders),
         tuple(place(ring) for ring in block.rings),
         tuple(place(sign) for sign in block.signs),
         block.track and place(block.track),

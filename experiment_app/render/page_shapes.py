@@ -7,9 +7,12 @@ wants them, components in [0, 1].
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from experiment_app.scene import Box
+
+if TYPE_CHECKING:
+    from experiment_app.render.sliders import PlacedSlider
 
 Role = Literal["title", "text", "prompt", "small", "hint", "error", "sign", "label", "chosen", "check", "button"]
 Colour = tuple[float, float, float, float]
@@ -152,6 +155,7 @@ class PageLayout:
     unit: float
     texts: tuple[PlacedText, ...] = ()
     boxes: tuple[PlacedBox, ...] = ()
+    sliders: tuple[PlacedSlider, ...] = ()
     rings: tuple[Rectangle, ...] = ()
     signs: tuple[Rectangle, ...] = ()
     track: Rectangle | None = None
@@ -180,6 +184,8 @@ def shapes_of(layout: PageLayout) -> tuple[Shape, ...]:
         shapes.append(Shape(ring, CLEAR, 6 * u, max(2.0, 1.0 * u), ACCENT))
     for placed in layout.boxes:
         shapes += _box_shapes(placed, u)
+    for slider in layout.sliders:
+        shapes += slider.shapes(u)
     if layout.track is not None and layout.done is not None:
         shapes.append(Shape(layout.track, TRACK, layout.track.height / 2))
         shapes.append(Shape(layout.done, ACCENT, layout.done.height / 2))

@@ -9,19 +9,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protocols.adjustment import AdjustmentTask, AdjustmentTrial, Stage, advance, begin, handle, resumed
+from protocols.adjustment import AdjustmentTask, AdjustmentTrial, Stage, begin
 from protocols.events import FocusLost, KeyDown, KeyUp, Shown
+from protocols.stimulus import Walk
 
 TASK = AdjustmentTask(minimum=80.0, maximum=120.0, rate=10.0, minimum_looking_time=1.0)
 
 
 def started(start: float = 80.0, speed: float = 1.0, time: float = 0.0) -> AdjustmentTrial:
-    return handle(begin(TASK, speed, start), Shown(time))
+    return begin(TASK, Walk("F1", "", speed), start).handle(Shown(time))
 
 
 def played(trial: AdjustmentTrial, *events: object) -> AdjustmentTrial:
     for event in events:
-        trial = handle(trial, event)  # type: ignore[arg-type]
+        trial = trial.handle(event)  # type: ignore[arg-type]
     return trial
 
 
@@ -46,13 +47,13 @@ def test_the_same_keys_give_the_same_response_at_any_frame_rate(holds, frame_rat
         events += [KeyDown(time + wait, key), KeyUp(time + wait + length, key)]
         time += wait + length
     end = time + 1.0
-    whole = advance(played(started(), *events), end)
+    whole = played(started(), *events).advance(end)
     trial, waiting = started(), list(events)
     for frame in range(1, math.ceil(end * frame_rate)):
         while waiting and waiting[0].time <= frame / frame_rate:
-            trial = handle(trial, waiting.pop(0))
-        trial = advance(trial, min(frame / frame_rate, end))
-    trial = advance(played(trial, *waiting), end)
+            trial = trial.handle(waiting.pop(0))
+        trial = trial.advance(min(frame / frame_rate, end))
+    trial = played(trial, *waiting).advance(end)
     assert trial.setting == pytest.approx(whole.setting, abs=1e-9)
     assert trial.strides == pytest.approx(whole.strides, abs=1e-9)
     assert trial.distance == pytest.approx(whole.distance, abs=1e-9)
@@ -61,34 +62,34 @@ def test_the_same_keys_give_the_same_response_at_any_frame_rate(holds, frame_rat
 @given(st.floats(80.0, 120.0), st.floats(0.0, 20.0), st.sampled_from(["left", "right"]))
 def test_the_setting_never_leaves_the_range(start, length, key):
     trial = played(started(start), KeyDown(0.5, key))
-    assert 80.0 <= advance(trial, 0.5 + length).setting <= 120.0
+    assert 80.0 <= trial.advance(0.5 + length).setting <= 120.0
 
 
 def test_strides_are_the_integral_of_step_frequency_also_past_the_end_of_the_range():
     # 110 -> 120 in 1 s (mean 115), then 120 for 2 s: (115 + 240) / 120 strides
-    trial = advance(played(started(110.0), KeyDown(0.0, "right")), 3.0)
+    trial = played(started(110.0), KeyDown(0.0, "right")).advance(3.0)
     assert trial.strides == pytest.approx((115.0 + 240.0) / 120.0, abs=1e-12)
     assert trial.distance == pytest.approx(3.0)
 
 
 @given(st.floats(0.0, 5.0), st.floats(1e-9, 1e-3))
 def test_the_walker_does_not_jump_when_a_key_goes_down_or_up(at, later):
-    before = advance(started(), at)
-    after = advance(handle(before, KeyDown(at, "right")), at + later)
+    before = started().advance(at)
+    after = before.handle(KeyDown(at, "right")).advance(at + later)
     assert abs(after.strides - before.strides) <= 120.0 / 120.0 * later * 1.001
-    assert handle(before, KeyDown(at, "right")).strides == before.strides
+    assert before.handle(KeyDown(at, "right")).strides == before.strides
 
 
 def test_both_keys_held_cancel_each_other():
     trial = played(started(100.0), KeyDown(0.0, "left"), KeyDown(0.0, "right"))
-    assert advance(trial, 2.0).setting == 100.0
-    trial = handle(advance(trial, 2.0), KeyUp(2.0, "left"))
-    assert advance(trial, 2.5).setting == pytest.approx(105.0)
+    assert trial.advance(2.0).setting == 100.0
+    trial = trial.advance(2.0).handle(KeyUp(2.0, "left"))
+    assert trial.advance(2.5).setting == pytest.approx(105.0)
 
 
 def test_losing_focus_releases_every_key():
     trial = played(started(100.0), KeyDown(0.0, "right"), FocusLost(0.5))
-    assert advance(trial, 5.0).setting == pytest.approx(105.0)
+    assert trial.advance(5.0).setting == pytest.approx(105.0)
 
 
 def test_a_second_press_of_a_held_key_counts_once():
@@ -104,15 +105,15 @@ def test_confirming_before_the_minimum_looking_time_is_counted_and_refused():
 
 
 def test_nothing_moves_before_the_first_frame_and_after_confirmation():
-    waiting = played(begin(TASK, 1.0, 80.0), KeyDown(0.5, "right"))
-    assert advance(waiting, 3.0).setting == 80.0
+    waiting = played(begin(TASK, Walk("F1", "", 1.0), 80.0), KeyDown(0.5, "right"))
+    assert waiting.advance(3.0).setting == 80.0
     done = played(started(), KeyDown(2.0, "enter"), KeyDown(2.1, "right"))
-    assert advance(done, 9.0) == done
+    assert done.advance(9.0) == done
 
 
 def test_a_pause_takes_no_looking_time_and_moves_nothing():
-    trial = advance(started(), 1.0)
-    trial = advance(resumed(trial, 61.0), 62.0)
+    trial = started().advance(1.0)
+    trial = trial.resumed(61.0).advance(62.0)
     assert trial.looked == pytest.approx(2.0)
     assert trial.distance == pytest.approx(2.0)
 
@@ -125,4 +126,4 @@ def test_reversals_are_changes_of_direction_between_presses():
 
 def test_a_start_outside_the_range_is_refused_in_words():
     with pytest.raises(ValueError, match=r"130 steps/min is outside the range 80 to 120"):
-        begin(TASK, 1.0, 130.0)
+        begin(TASK, Walk("F1", "", 1.0), 130.0)

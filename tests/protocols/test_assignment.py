@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from protocols.assignment import Arrival, counts, group_of, place_in_group, place_of
 from protocols.consistency import inconsistencies
 from protocols.order_mistakes import order_mistakes
-from protocols.plan import make_plan, value_of
+from protocols.plan import make_plan
+from protocols.setting import value_of
 from protocols.study import Participants
 from protocols.study_file import parse_study
 from tests.protocols.studies import changed, study
@@ -119,7 +120,7 @@ def test_what_is_shown_can_depend_on_the_assigned_group():
     file = parse_study("assigned.yaml", text)
     assert inconsistencies(file.study) == []
     trial = make_plan(file.study, 1, 2, {"shown": "man"}).steps[-2].trial  # type: ignore[union-attr]
-    assert value_of("$shown", trial) == "man"
+    assert value_of("$shown", trial.values) == "man"
     assert "shown" not in trial.levels
 
 

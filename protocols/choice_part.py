@@ -1,0 +1,68 @@
+"""The choice task as a study file gives it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+from pydantic import Field
+
+from protocols import choice
+from protocols.choice import ChoiceTask, ChoiceTrial
+from protocols.mistake import Mistake, no_such
+from protocols.pair_part import PairPart
+from protocols.parts import Key, Name
+from protocols.task import Setup
+from protocols.task_part import TASK, TaskKeys
+
+if TYPE_CHECKING:
+    from protocols.study import Study
+
+
+class ChoiceKeys(TaskKeys):
+    """Keys of the choice task: first is the left walk, or the one shown first."""
+
+    first: Key = "left"
+    second: Key = "right"
+    replay: Key = "r"
+    take_break: Key = Field("b", alias="break")
+
+
+class Choice(PairPart):
+    """Two-alternative forced choice: which of two walks."""
+
+    responses: ClassVar[tuple[str, ...]] = (
+        "chosen", "side", "left", "right", "first", "second", "original", "correct", "views",
+    )  # fmt: skip
+    measures: ClassVar[tuple[str, ...]] = ("confusion_rate", "correct", "response_time")
+
+    kind: Literal["choice"]
+    original: Name | None = Field(
+        None, description="The alternative that choosing another is a confusion of; none if left out."
+    )
+    sides: Literal["balanced", "as_written"] = Field(
+        "balanced", description="balanced: every alternative equally often on either side, by the run's seed."
+    )
+    keys: ChoiceKeys = ChoiceKeys()
+
+    @property
+    def balanced(self) -> bool:
+        """True when the places of the alternatives are balanced over trials."""
+        return self.sides == "balanced"
+
+    @property
+    def key_part(self) -> TaskKeys:
+        """The task's keys."""
+        return self.keys
+
+    def begin(self, setup: Setup) -> ChoiceTrial:
+        """A choice waiting for its first frame."""
+        return choice.begin(ChoiceTask(self.showing, self.original or "", self.minimum_looking_time), setup)
+
+    def mistakes(self, study: Study) -> Iterator[Mistake]:
+        """Too few alternatives, an original that is none of them, and what every pair can have wrong."""
+        if len(self.alternatives) < 2:
+            yield Mistake((*TASK, "alternatives"), "a choice needs two alternatives")
+        if self.original is not None and self.original not in self.alternatives:
+            yield Mistake((*TASK, "original"), no_such(self.original, self.alternatives, "alternative"))
+        yield from super().mistakes(study)

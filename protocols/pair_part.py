@@ -1,0 +1,81 @@
+"""What choice and rating have in common in a study file: alternatives, how they are shown, the question."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import Field
+
+from protocols.mistake import Mistake, Place
+from protocols.parts import Level, Name, Text
+from protocols.setting import Given
+from protocols.showing import Showing
+from protocols.stimulus import Alternative, Stimulus, Walk
+from protocols.task_part import TASK, TaskPart
+
+if TYPE_CHECKING:
+    from protocols.study import Study
+
+DECIDING = 4.0
+"""s a participant typically takes to decide once both alternatives can be seen."""
+
+
+class PairPart(TaskPart):
+    """Alternatives shown side by side or one after the other, and a question about them."""
+
+    question: Text = Field(description="Asked under the walks; {first}, {replay}, ... become the participant's keys.")
+    arrangement: Literal["side_by_side", "one_after_the_other"] = "side_by_side"
+    alternatives: dict[Name, Alternative] = Field(
+        min_length=1, max_length=2, description="Name: what differs from `stimulus`."
+    )
+    time_limit: float | None = Field(
+        None,
+        strict=True,
+        ge=0.1,
+        le=600.0,
+        description="s the walks can be seen in a view; then only the question stays. Until the answer if left out.",
+    )
+    gap: float = Field(0.5, strict=True, ge=0.0, le=60.0, description="s between walks one after the other.")
+    views: int | None = Field(
+        1, strict=True, ge=1, le=100, description="How often the walks may be seen; null: as often as wanted."
+    )
+    minimum_looking_time: float = Field(0.0, strict=True, ge=0.0, le=60.0, description="s before an answer counts.")
+
+    @classmethod
+    def takes(cls) -> dict[str, Any]:
+        """No setting of its own; those of the alternatives come with them."""
+        return {}
+
+    def settings(self, place: Place) -> Iterator[Given]:
+        """Every setting of every alternative."""
+        for name, alternative in self.alternatives.items():
+            yield from alternative.settings((*place, "alternatives", name))
+
+    @property
+    def asked(self) -> str:
+        """The question under the walks."""
+        return self.question
+
+    @property
+    def showing(self) -> Showing:
+        """How the alternatives are shown."""
+        return Showing(self.arrangement, self.time_limit, self.gap, self.views)
+
+    @property
+    def seconds(self) -> float:
+        """s that a participant typically takes for a trial."""
+        after = self.arrangement == "one_after_the_other"
+        shown = len(self.alternatives) * ((self.time_limit or 0.0) + self.gap) if after else 0.0
+        return max(shown + DECIDING, self.minimum_looking_time)
+
+    def walks(self, stimulus: Stimulus, levels: Mapping[str, Level]) -> dict[str, Walk]:
+        """Name of every alternative to its walk in a trial with these levels, in the order of the file."""
+        return {name: stimulus.walk(levels, alternative) for name, alternative in self.alternatives.items()}
+
+    def mistakes(self, study: Study) -> Iterator[Mistake]:
+        """Successions without an end, keys without use or used twice."""
+        if self.arrangement == "one_after_the_other" and self.time_limit is None:
+            message = "one after the other needs time_limit: how many s each walk is shown"
+            yield Mistake((*TASK, "arrangement"), message)
+        yield from super().mistakes(study)

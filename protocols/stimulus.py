@@ -1,0 +1,172 @@
+"""What walks, as the study file says it, and as it is in one trial: every `$factor` and table replaced.
+
+Names of actors, bodies and styles are only names here; knows no motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, Tag
+
+from protocols.mistake import Place
+from protocols.parts import Level, Number, Speed, StepFrequency, Text
+from protocols.setting import (
+    CONSTANT,
+    AsFactor,
+    AsTable,
+    Given,
+    NameSetting,
+    NumberSetting,
+    SettingsPart,
+    SpeedSetting,
+    StepFrequencySetting,
+    by_form,
+    value_of,
+)
+from protocols.viewing import Appearance
+
+Method = Literal["captured", "blend", "timewarp", "fourier", "pca", "poulaine"]
+Points = Literal[4, 5]
+Interpolation = Literal["cubic", "pchip", "hermite"]
+Regression = Literal["raw", "normalised", "refitted"]
+Sex = Literal["F", "M"]
+Harmonics = Annotated[int, Field(strict=True, ge=1, le=40)]
+Height = Annotated[float, Field(strict=True, ge=0.5, le=2.5)]
+WalkRatio = Annotated[float, Field(strict=True, gt=0.0, lt=0.05)]
+
+
+class MakingPart(SettingsPart):
+    """How a walk is made out of captured ones; each value is a constant, `$factor` or a table by a factor."""
+
+    method: Annotated[AsFactor | AsTable | Annotated[Method, Tag(CONSTANT)], by_form] = Field(
+        "captured", description="captured: the actor's own walk at that speed. The others are in docs/methods.md."
+    )
+    source_speed: SpeedSetting | None = Field(
+        None, description="m/s of the captured walk it is made from (timewarp, poulaine); the shown speed if left out."
+    )
+    points: Annotated[AsFactor | AsTable | Annotated[Points, Tag(CONSTANT)], by_form] = Field(
+        5, description="Control points of a poulaine: 4 (E, V, I, A) or 5 (and M)."
+    )
+    interpolation: Annotated[AsFactor | AsTable | Annotated[Interpolation, Tag(CONSTANT)], by_form] = Field(
+        "hermite", description="Of a poulaine between its points."
+    )
+    harmonics: Annotated[AsFactor | AsTable | Annotated[Harmonics, Tag(CONSTANT)], by_form] = Field(
+        2, description="Of a Fourier walk; Tilmanne and Dutoit used 2."
+    )
+    style: NameSetting | None = Field(None, description="A walking style instead of the actor's own way.")
+    share: NumberSetting = Field(
+        1.0, description="Of the way from the actor's own walk (0) to the style (1), and beyond; fourier only."
+    )
+    table: Annotated[AsFactor | AsTable | Annotated[Regression, Tag(CONSTANT)], by_form] = Field(
+        "normalised", description="By which a poulaine is edited."
+    )
+    height: Annotated[AsFactor | AsTable | Annotated[Height, Tag(CONSTANT)], by_form] | None = Field(
+        None, description="m, of the person a walk is edited towards (poulaine, pca)."
+    )
+    sex: Annotated[AsFactor | AsTable | Annotated[Sex, Tag(CONSTANT)], by_form] | None = Field(
+        None, description="Of the person a poulaine is edited towards."
+    )
+    walk_ratio: Annotated[AsFactor | AsTable | Annotated[WalkRatio, Tag(CONSTANT)], by_form] | None = Field(
+        None, description="m·min that a poulaine is edited towards at its own speed."
+    )
+
+    @classmethod
+    def takes(cls) -> dict[str, Any]:
+        """Field to the type of its values."""
+        return {
+            "method": Method, "source_speed": Speed, "points": Points, "interpolation": Interpolation,
+            "harmonics": Harmonics, "style": Text, "share": Number, "table": Regression, "height": Height,
+            "sex": Sex, "walk_ratio": WalkRatio,
+        }  # fmt: skip
+
+    def resolved(self, levels: Mapping[str, Level]) -> Making:
+        """The way of making in a trial with these levels."""
+        return Making(**{name: value_of(getattr(self, name), levels) for name in self.takes()})
+
+
+class Alternative(SettingsPart):
+    """One of the walks that are compared: what differs from `stimulus`, each a constant, `$factor` or a table."""
+
+    actor: NameSetting | None = None
+    body: NameSetting | None = None
+    speed: SpeedSetting | None = Field(None, description="m/s")
+    step_frequency: StepFrequencySetting | None = Field(None, description="steps/min; what the walk has if left out.")
+    making: MakingPart | None = None
+
+    @classmethod
+    def takes(cls) -> dict[str, Any]:
+        """Field to the type of its values."""
+        return {"actor": Text, "body": Text, "speed": Speed, "step_frequency": StepFrequency}
+
+    def settings(self, place: Place) -> Iterator[Given]:
+        """Every setting that is given, also of the way of making."""
+        yield from super().settings(place)
+        if self.making is not None:
+            yield from self.making.settings((*place, "making"))
+
+
+class Stimulus(SettingsPart, Appearance):
+    """What walks: each value is a constant, `$factor` (its level in the trial) or a table by a factor."""
+
+    actor: NameSetting = Field(description="An actor's name, or $factor.")
+    speed: SpeedSetting = Field(description="Walking speed, m/s, or $factor.")
+    body: NameSetting | None = Field(None, description="A body's name or $factor; the actor's own when left out.")
+    making: MakingPart | None = Field(None, description="How the walk is made; captured when left out.")
+
+    @classmethod
+    def takes(cls) -> dict[str, Any]:
+        """Field to the type of its values."""
+        return {"actor": Text, "speed": Speed, "body": Text}
+
+    def settings(self, place: Place) -> Iterator[Given]:
+        """Every setting that is given, also of the way of making."""
+        yield from super().settings(place)
+        if self.making is not None:
+            yield from self.making.settings((*place, "making"))
+
+    def walk(self, levels: Mapping[str, Level], alternative: Alternative | None = None) -> Walk:
+        """The walk of a trial with these levels, or an alternative's: what it leaves out is as in the stimulus."""
+        given = alternative or Alternative()
+        body, making = given.body or self.body, given.making or self.making
+        frequency = value_of(given.step_frequency, levels)
+        return Walk(
+            actor=str(value_of(given.actor or self.actor, levels)),
+            body=str(value_of(body, levels)) if body else "",
+            speed=float(value_of(given.speed or self.speed, levels)),
+            step_frequency=None if frequency is None else float(frequency),
+            making=making.resolved(levels) if making is not None else Making(),
+        )
+
+
+@dataclass(frozen=True)
+class Making:
+    """How a walk is made; see MakingPart. source_speed: m/s or None, the speed shown; style: None, the actor's own."""
+
+    method: Method = "captured"
+    source_speed: float | None = None
+    points: Points = 5
+    interpolation: Interpolation = "hermite"
+    harmonics: int = 2
+    style: str | None = None
+    share: float = 1.0
+    table: Regression = "normalised"
+    height: float | None = None
+    sex: Sex | None = None
+    walk_ratio: float | None = None
+
+
+@dataclass(frozen=True)
+class Walk:
+    """Which walk is shown in a trial.
+
+    body: "" is the actor's own. speed: m/s. step_frequency: steps/min, None: what the walk has by itself.
+    """
+
+    actor: str
+    body: str
+    speed: float
+    step_frequency: float | None = None
+    making: Making = Making()

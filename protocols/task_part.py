@@ -1,0 +1,87 @@
+"""What every task's part of a study file answers, so that plan, session, check and simulation know no task."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, ClassVar
+
+from pydantic import Field
+
+from protocols.mistake import Mistake, Place
+from protocols.parts import Key, Level, Part
+from protocols.setting import SettingsPart
+from protocols.stimulus import Stimulus, Walk
+from protocols.task import Setup, TaskTrial
+
+if TYPE_CHECKING:
+    from protocols.study import Study
+
+TASK: Place = ("task",)
+
+
+class TaskKeys(Part):
+    """Keys of a task; every task has one for a break."""
+
+    take_break: Key = Field("b", alias="break")
+
+    def named(self) -> dict[str, str]:
+        """What each key is for, as pages and questions name it, to the key."""
+        keys = {f.alias or name: getattr(self, name) for name, f in type(self).model_fields.items()}
+        named = {name: key for name, key in keys.items() if isinstance(key, str)}
+        return {**{name: key for name, key in named.items() if name != "break"}, "break": self.take_break}
+
+
+class TaskPart(SettingsPart):
+    """A task as the study file gives it.
+
+    responses: columns of a trial that its response fills. measures: what of a trial can be analysed.
+    """
+
+    responses: ClassVar[tuple[str, ...]] = ()
+    measures: ClassVar[tuple[str, ...]] = ()
+
+    @property
+    def asked(self) -> str:
+        """The question under the walks, "" for none."""
+        return ""
+
+    @property
+    def seconds(self) -> float:
+        """s that a participant typically takes for a trial."""
+        raise NotImplementedError
+
+    @property
+    def balanced(self) -> bool:
+        """True when the places of the alternatives are balanced over trials, False when they stay as written."""
+        return False
+
+    @property
+    def key_part(self) -> TaskKeys:
+        """The task's keys."""
+        raise NotImplementedError
+
+    def keys_for(self, participant_number: int) -> dict[str, str]:
+        """What each key is for to the key, for the participant of this number (from 1)."""
+        return self.key_part.named()
+
+    def walks(self, stimulus: Stimulus, levels: Mapping[str, Level]) -> dict[str, Walk]:
+        """Name of every alternative to its walk in a trial with these levels; "" where there is only one."""
+        return {"": stimulus.walk(levels)}
+
+    def extremes(self, stimulus: Stimulus, levels: Mapping[str, Level]) -> list[Walk]:
+        """Every walk that must be possible for a trial with these levels."""
+        return list(self.walks(stimulus, levels).values())
+
+    def begin(self, setup: Setup) -> TaskTrial:
+        """A trial waiting for its first frame."""
+        raise NotImplementedError
+
+    def mistakes(self, study: Study) -> Iterator[Mistake]:
+        """What is wrong with the task in this study, beside its settings: here, keys used twice."""
+        used: dict[str, str] = {}
+        for name, key in self.key_part.named().items():
+            if key == "escape":
+                yield Mistake((*TASK, "keys", name), "escape is kept for the pause page; choose another key")
+            if key in used:
+                yield Mistake((*TASK, "keys", name), f"{key} is also the key for {used[key]}; choose another")
+            used[key] = name
