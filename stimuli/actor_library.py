@@ -28,7 +28,7 @@ from stimuli.gait_model import COEFFICIENTS, SIGNALS, WalkCurves
 from stimuli.retarget import Figure, scaled, walk_cycle
 from stimuli.skeleton import Floats
 
-VERSION = 1
+VERSION = 2
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
 
 
@@ -38,8 +38,7 @@ class StoredCycle:
 
     speed: float  # m/s, at which it stands in the tree
     step_frequency: float  # steps/min
-    stance: float  # share of the cycle
-    coefficients: Floats  # (S, C) signals of the gait model
+    walk: WalkCurves
     files: tuple[str, ...] = ()
     captured: tuple[Gait, ...] = ()
     seam: float = 0.0  # m, gap of the captured loop before it became harmonics
@@ -112,7 +111,7 @@ def stored(actor: StoredActor, library: Path | None = None) -> Path:
     write_whole(
         path,
         about=np.array(json.dumps(_about(actor), ensure_ascii=False)),
-        coefficients=np.array([cycle.coefficients for cycle in actor.cycles], dtype=np.float32),
+        coefficients=np.array([cycle.walk.sides for cycle in actor.cycles], dtype=np.float32),
     )
     return path
 
@@ -151,10 +150,7 @@ def actor_of(stored_actor: StoredActor, body: Body | None = None) -> Actor:
     person = stored_actor.person
     worn = body or load_body("woman" if person.sex == "F" else "man")
     figure = Figure(scaled(worn.skeleton, person.height / worn.stature))
-    cycles = [
-        walk_cycle(figure, WalkCurves.symmetric(cycle.coefficients, cycle.stance), cycle.speed, cycle.step_frequency)
-        for cycle in stored_actor.cycles
-    ]
+    cycles = [walk_cycle(figure, cycle.walk, cycle.speed, cycle.step_frequency) for cycle in stored_actor.cycles]
     return Actor(
         name=person.name,
         sex=person.sex,
@@ -201,7 +197,8 @@ def _about(actor: StoredActor) -> dict[str, Any]:
                     {
                         "speed": cycle.speed,
                         "step_frequency": cycle.step_frequency,
-                        "stance": cycle.stance,
+                        "stance": [float(share) for share in cycle.walk.stance],
+                        "left_strike": cycle.walk.left_strike,
                         "files": cycle.files,
                         "captured": [[gait.step_length, gait.step_frequency] for gait in cycle.captured],
                         "seam": cycle.seam,
@@ -218,7 +215,7 @@ def _read(about: dict[str, Any], coefficients: Floats) -> StoredActor:
     if about["version"] != VERSION or tuple(about["signals"]) != SIGNALS:
         raise ValueError(f"version {about['version']}")
     count = sum(len(row["cycles"]) for row in about["rows"])
-    if coefficients.shape != (count, len(SIGNALS), COEFFICIENTS) or not np.isfinite(coefficients).all():
+    if coefficients.shape != (count, 2, len(SIGNALS), COEFFICIENTS) or not np.isfinite(coefficients).all():
         raise ValueError(f"coefficients of shape {coefficients.shape}")
     left = iter(coefficients)
     rows = tuple(
@@ -233,8 +230,7 @@ def _read_cycle(cycle: dict[str, Any], coefficients: Floats) -> StoredCycle:
     return StoredCycle(
         speed=float(cycle["speed"]),
         step_frequency=float(cycle["step_frequency"]),
-        stance=float(cycle["stance"]),
-        coefficients=coefficients,
+        walk=WalkCurves(coefficients, np.array(cycle["stance"], dtype=float), float(cycle["left_strike"])),
         files=tuple(cycle["files"]),
         captured=tuple(Gait(*gait) for gait in cycle["captured"]),
         seam=float(cycle["seam"]),

@@ -42,6 +42,7 @@ WINDOW = 0.04  # s on each side of a frame that is compared with it, so that vel
 UNLIKE = 0.10  # share by which a loop's travel may differ from the walk's before it counts against it
 MEETING = 0.12  # of the cycle at each end over which the difference of velocities is bent away
 SMOOTH = 10.0  # Hz, low-pass of the closed cycle; walking has 99.7 % of its power below 6 Hz (Winter 2009)
+LEAST_STEP = 0.3  # of the stride time; a shorter step than that is a strike missed, not a limp
 TRAVEL_WEIGHT = 0.05  # s, by which a difference of hips velocity counts like one of joint places
 
 
@@ -71,6 +72,7 @@ class Cycle:
     hips:         (N, 3) m: left, above the clip's ground, ahead of a point that moves evenly at the walker's speed
     stride_length m; stride_time s
     stance_share: of the cycle, left and right foot; nan where no toe-off was found
+    left_strike: phase of the left heel strike; 0.5 where none was found
     """
 
     joints: tuple[str, ...]
@@ -82,6 +84,7 @@ class Cycle:
     stride_time: float
     stance_share: tuple[float, float]
     provenance: Provenance
+    left_strike: float = 0.5
 
     @property
     def gait(self) -> Gait:
@@ -117,7 +120,7 @@ def cycle_and_measures(clip: Clip, phases: int = PHASES, rest: RestPose | None =
     rotations = _deltas(clip, world[frames], rest, joints)
     path = positions[frames, clip.roles["hips"]]
     hips, length = _without_travel(path, rotations[:, 0], share)
-    seam = _strike_share(clip, events, first, last)
+    seam, left_strike = _strikes(clip, events, first, last)
     sample = (np.arange(phases) / phases + seam) % 1.0
     time = (last - first) / clip.rate
     cycle = Cycle(
@@ -139,6 +142,7 @@ def cycle_and_measures(clip: Clip, phases: int = PHASES, rest: RestPose | None =
             seam_phase=float(-seam % 1.0),
             rest="zero pose" if rest.standing_zero else "mean posture",
         ),
+        left_strike=left_strike,
     )
     return cycle, measures
 
@@ -205,14 +209,27 @@ def _sampled(closed: Floats, sample: Floats, time: float) -> Floats:
     return np.asarray(CubicSpline(np.linspace(0.0, 1.0, len(looped)), looped, bc_type="periodic")(sample))
 
 
-def _strike_share(clip: Clip, events: Sequence[FootEvent], first: int, last: int) -> float:
-    """Share of the loop at which the right heel strikes; from the left one half a cycle away if need be."""
-    for side, shift in (("right", 0.0), ("left", 0.5)):
-        strikes = [e.time * clip.rate for e in events if e.side == side and e.kind == "strike"]
-        if strikes:
-            nearest = min(strikes, key=lambda frame: abs(frame - 0.5 * (first + last)))
-            return float(((nearest - first) / (last - first) + shift) % 1.0)
-    raise GaitError(f"{clip.name}: no heel strike was found")
+def _strikes(clip: Clip, events: Sequence[FootEvent], first: int, last: int) -> tuple[float, float]:
+    """Share of the loop at which the right heel strikes, and the phase from there at which the left one does.
+
+    A foot without a strike, or one that would strike out of turn, is taken to strike half a cycle after the other.
+    """
+    right, left = (_strike_share(clip, events, side, first, last) for side in ("right", "left"))
+    if right is None and left is None:
+        raise GaitError(f"{clip.name}: no heel strike was found")
+    if right is None or left is None:
+        return ((left or 0.0) + 0.5) % 1.0 if right is None else right, 0.5
+    between = (left - right) % 1.0
+    return right, between if LEAST_STEP <= between <= 1.0 - LEAST_STEP else 0.5
+
+
+def _strike_share(clip: Clip, events: Sequence[FootEvent], side: str, first: int, last: int) -> float | None:
+    """Share of the loop at which a heel strikes; of several the strike nearest to the loop's middle."""
+    strikes = [e.time * clip.rate for e in events if e.side == side and e.kind == "strike"]
+    if not strikes:
+        return None
+    nearest = min(strikes, key=lambda frame: abs(frame - 0.5 * (first + last)))
+    return float(((nearest - first) / (last - first)) % 1.0)
 
 
 def _ground(clip: Clip, positions: Floats) -> float:

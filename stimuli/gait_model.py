@@ -6,8 +6,8 @@ length after Hof 1996), of sex where the data know it, plus a person's own offse
 person, shrunk as in a mixed model). `stimuli/fitting` makes the coefficients; this file only evaluates them and
 knows no body, clip or file but its own.
 
-Axes are the walker's: X left, Y up, Z forward. Phase 0 is the right heel strike. The model is symmetric: the left
-side walks like the mirrored right side half a cycle later.
+Axes are the walker's: X left, Y up, Z forward. Phase 0 is the right heel strike. The model is symmetric: its left
+side walks like the mirrored right side half a cycle later; captured walks need not be (WalkCurves).
 """
 
 from __future__ import annotations
@@ -157,6 +157,17 @@ def curves(coefficients: Floats, phases: Floats) -> dict[str, Floats]:
     """Signal name -> (N,) values at the phases: midline signals and the right side's signals."""
     values = basis(phases) @ coefficients.T
     return {name: values[:, index] for index, name in enumerate(SIGNALS)}
+
+
+def shifted(coefficients: Floats, phase: float) -> Floats:
+    """The same curves (..., C), started `phase` of a cycle later."""
+    turned = np.array(coefficients, dtype=float)
+    for harmonic in range(1, (COEFFICIENTS - 1) // 2 + 1):
+        cosine, sine = coefficients[..., 2 * harmonic - 1], coefficients[..., 2 * harmonic]
+        c, s = np.cos(2 * np.pi * harmonic * phase), np.sin(2 * np.pi * harmonic * phase)
+        turned[..., 2 * harmonic - 1] = cosine * c + sine * s
+        turned[..., 2 * harmonic] = sine * c - cosine * s
+    return turned
 
 
 @cache

@@ -32,6 +32,8 @@ class DeliveredGait:
     sole_lowest:            mm, lowest point of either sole over the cycle (negative is below the ground)
     sole_stance:            mm, largest distance of the lowest point from the ground in stance
     knee_least:             deg, least flexion of either knee (0 straight, negative overstretched)
+    step_length_left, step_length_right: m, of the steps that end with the left and the right heel strike
+    left_strike:            phase of the left heel strike, counted from the right one; 0.5 where steps last alike
     """
 
     speed: float  # m/s
@@ -42,6 +44,9 @@ class DeliveredGait:
     sole_lowest: float
     sole_stance: float
     knee_least: float
+    step_length_left: float
+    step_length_right: float
+    left_strike: float
 
     @property
     def walk_ratio(self) -> float:
@@ -60,7 +65,8 @@ def delivered_gait(actor: Actor, speed: float, step_frequency: float, samples: i
     strikes = [_strike(lowest[:, side], times, period) for side in (0, 1)]
     first, second = (strikes[0] - strikes[1]) % period, (strikes[1] - strikes[0]) % period
     frequency = 60.0 / (0.5 * (first + second))
-    length = 0.5 * sum(_step_length(soles, lowest, times, strikes[side], side, actor.figure.sole) for side in (0, 1))
+    left, right = (_step_length(soles, lowest, times, strikes[side], side, actor.figure.sole) for side in (0, 1))
+    length = 0.5 * (left + right)
     drifts = np.concatenate([_drifts(soles[:, side], speed, times, period) for side in (0, 1)])
     on_ground = lowest < TOUCHING
     knees = [_knee(world[..., :3, 3], side) for side in ("left", "right")]
@@ -73,6 +79,9 @@ def delivered_gait(actor: Actor, speed: float, step_frequency: float, samples: i
         sole_lowest=float(lowest.min()) * 1e3,
         sole_stance=float(np.abs(lowest[on_ground]).max()) * 1e3,
         knee_least=float(np.min(knees)),
+        step_length_left=left,
+        step_length_right=right,
+        left_strike=first / period,
     )
 
 

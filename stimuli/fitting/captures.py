@@ -14,7 +14,7 @@ import numpy as np
 from scipy.signal import butter, filtfilt, find_peaks
 
 from stimuli.clip import Clip, world_pose
-from stimuli.gait_model import COEFFICIENTS, HARMONICS, MIDLINE, MIRROR_SIGN, MODEL_ARM, SIGNALS, basis
+from stimuli.gait_model import HARMONICS, MIDLINE, MIRROR_SIGN, MODEL_ARM, SIGNALS, basis
 from stimuli.motion_files.bvh import read_bvh
 from stimuli.rotations import about_axis, inverse, multiply, rotate, shortest_arc, to_exponential
 from stimuli.skeleton import Floats
@@ -111,17 +111,6 @@ def close_cycle(samples: Floats) -> Floats:
     count = len(samples) - 1
     ramp = (np.arange(count + 1) / count - 0.5).reshape(-1, *[1] * (samples.ndim - 1))
     return np.asarray((samples - ramp * (samples[-1] - samples[0]))[:-1])
-
-
-def shifted(coefficients: Floats, phase: float) -> Floats:
-    """The same curves (..., C), started `phase` of a cycle later."""
-    turned = np.array(coefficients, dtype=float)
-    for harmonic in range(1, (COEFFICIENTS - 1) // 2 + 1):
-        cosine, sine = coefficients[..., 2 * harmonic - 1], coefficients[..., 2 * harmonic]
-        c, s = np.cos(2 * np.pi * harmonic * phase), np.sin(2 * np.pi * harmonic * phase)
-        turned[..., 2 * harmonic - 1] = cosine * c + sine * s
-        turned[..., 2 * harmonic] = sine * c - cosine * s
-    return turned
 
 
 def _in_walker_frame(clip: Clip) -> tuple[dict[str, Floats], Floats, dict[str, Floats], float]:

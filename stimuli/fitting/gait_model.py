@@ -19,8 +19,8 @@ from pathlib import Path
 import numpy as np
 
 from stimuli.fitting import captures, laboratory
-from stimuli.fitting.captures import Walk, shifted
-from stimuli.gait_model import SIGNALS, GaitModel, Step, basis
+from stimuli.fitting.captures import Walk
+from stimuli.gait_model import SIGNALS, GaitModel, Step, basis, shifted
 from stimuli.skeleton import Floats
 
 PERSON_RATIO = 3.0  # variance between people over variance between walks of one person

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from stimuli.actors import CYCLE_SPEEDS, EARLIER_OFF, METRONOME, Person, walk_coefficients
-from stimuli.gait_model import SIGNALS, load_gait_model
+from stimuli.gait_model import SIGNALS, WalkCurves, load_gait_model
+from stimuli.importing.signals import evened
 from stimuli.importing.skeleton_bias import skeleton_bias
 from stimuli.importing.walks import CapturedWalk
 from stimuli.skeleton import Floats
@@ -27,6 +28,8 @@ BELIEVED = 0.4
 
 TRUNK = ("hips_x", "spine_x", "chest_x", "neck_x", "head_x")
 LEGS = ("thigh", "shank", "foot_yaw", "knee_yaw")
+STANCE = (0.52, 0.74)
+"""Least and largest drawn share of the cycle on one foot: a slow limp's good leg stands for some 0.72."""
 
 NEAR_SPEED, NEAR_FREQUENCY = 0.20, 8.0
 """m/s and steps/min within which a modelled walk is like a captured one."""
@@ -50,8 +53,7 @@ class ArrangedCycle:
 
     speed: float  # m/s
     step_frequency: float  # steps/min
-    stance: float  # share of the cycle
-    coefficients: Floats  # (S, C)
+    walk: WalkCurves
     files: tuple[str, ...] = ()
 
 
@@ -68,9 +70,11 @@ class Arrangement:
         return tuple(cycle for _, row in self.rows for cycle in row)
 
 
-def arrange(walks: Sequence[CapturedWalk], person: Person, leg_length: float, complete: bool) -> Arrangement:
-    """The cycles of a person. leg_length: m, of the body that will be drawn."""
-    captured = [_captured(walk, person) for walk in walks]
+def arrange(
+    walks: Sequence[CapturedWalk], person: Person, leg_length: float, complete: bool, symmetric: bool = False
+) -> Arrangement:
+    """The cycles of a person. leg_length: m, of the body that will be drawn; symmetric: both sides are averaged."""
+    captured = [_captured(walk, person, symmetric) for walk in walks]
     if complete:
         return _completed(captured, walks, person, leg_length)
     groups = _groups(captured, ROW_GAP)
@@ -115,8 +119,11 @@ def _mean(cycles: list[ArrangedCycle], step_frequency: float | None) -> Arranged
     return ArrangedCycle(
         speed=float(np.mean([cycle.speed for cycle in cycles])),
         step_frequency=_mean_frequency(cycles) if step_frequency is None else step_frequency,
-        stance=float(np.mean([cycle.stance for cycle in cycles])),
-        coefficients=np.mean([cycle.coefficients for cycle in cycles], axis=0),
+        walk=WalkCurves(
+            np.mean([cycle.walk.sides for cycle in cycles], axis=0),
+            np.mean([cycle.walk.stance for cycle in cycles], axis=0),
+            float(np.mean([cycle.walk.left_strike for cycle in cycles])),
+        ),
         files=tuple(file for cycle in cycles for file in cycle.files),
     )
 
@@ -125,20 +132,26 @@ def _mean_frequency(cycles: Sequence[ArrangedCycle]) -> float:
     return float(np.mean([cycle.step_frequency for cycle in cycles]))
 
 
-def _captured(walk: CapturedWalk, person: Person) -> ArrangedCycle:
-    """The walk as captured, its posture's zero and what it does not hold taken from the gait model."""
-    model = load_gait_model()
-    none = np.zeros_like(walk.coefficients)
+def _captured(walk: CapturedWalk, person: Person, symmetric: bool) -> ArrangedCycle:
+    """The walk as captured, its posture's zero and what it does not hold taken from the gait model.
+
+    Where zero hangs on a rest pose only the mean of both sides is drawn to the average person's: what one leg does
+    differently from the other stays as captured.
+    """
+    model, captured = load_gait_model(), walk.curves
+    none = np.zeros(captured.sides.shape[1:])
     average, stance = walk_coefficients(model, person, none, walk.leg_length, walk.gait.speed, walk.gait.step_frequency)
-    coefficients = np.where(np.isnan(walk.coefficients), average, walk.coefficients - skeleton_bias(walk.names))
+    sides = np.where(np.isnan(captured.sides), average, captured.sides - skeleton_bias(walk.names))
     for name in TRUNK + (() if walk.marker_based else LEGS):
         index = SIGNALS.index(name)
         share = 0.0 if name == "hips_x" and walk.marker_based else BELIEVED
-        coefficients[index, 0] = average[index, 0] + share * (coefficients[index, 0] - average[index, 0])
-    own_stance = walk.stance - EARLIER_OFF if np.isfinite(walk.stance) else stance
-    return ArrangedCycle(
-        walk.gait.speed, walk.gait.step_frequency, float(np.clip(own_stance, 0.56, 0.70)), coefficients, (walk.file,)
-    )
+        sides[:, index, 0] += (1.0 - share) * (average[index, 0] - np.mean(sides[:, index, 0]))
+    shares = np.where(np.isfinite(captured.stance), captured.stance - EARLIER_OFF, np.nan)
+    shares = np.where(np.isfinite(shares), shares, np.nanmean([*shares, stance][: 3 if np.isnan(shares).all() else 2]))
+    curves = WalkCurves(sides, np.clip(shares, *STANCE), captured.left_strike)
+    if symmetric:
+        curves = WalkCurves(evened(curves.sides), np.full(2, np.mean(curves.stance)))
+    return ArrangedCycle(walk.gait.speed, walk.gait.step_frequency, curves, (walk.file,))
 
 
 def _completed(
@@ -166,25 +179,30 @@ def _completed(
 
 @dataclass(frozen=True, eq=False)
 class _Manner:
-    """What a person does differently from the gait model at each captured walk: (n, S, C) and (n,) of stance."""
+    """What a person does differently from the gait model at each captured walk.
+
+    residuals: (n, 2, S, C); stances: (n, 2) share of the cycle; strikes: (n,) phase of the left heel strike less 0.5
+    """
 
     person: Person
     places: Floats  # (n, 2) speed, step frequency
     residuals: Floats
     stances: Floats
+    strikes: Floats
 
     @classmethod
     def of(cls, captured: list[ArrangedCycle], walks: Sequence[CapturedWalk], person: Person) -> _Manner:
         residuals, stances = [], []
         for cycle, walk in zip(captured, walks, strict=True):
-            none = np.zeros_like(cycle.coefficients)
+            none = np.zeros(cycle.walk.sides.shape[1:])
             average, stance = walk_coefficients(
                 load_gait_model(), person, none, walk.leg_length, cycle.speed, cycle.step_frequency
             )
-            residuals.append(cycle.coefficients - average)
-            stances.append(cycle.stance - stance)
+            residuals.append(cycle.walk.sides - average)
+            stances.append(cycle.walk.stance - stance)
         places = np.array([[cycle.speed, cycle.step_frequency] for cycle in captured])
-        return cls(person, places, np.array(residuals), np.array(stances))
+        strikes = np.array([cycle.walk.left_strike - 0.5 for cycle in captured])
+        return cls(person, places, np.array(residuals), np.array(stances), strikes)
 
     def cycle(self, speed: float, step_frequency: float, leg_length: float) -> ArrangedCycle:
         """The modelled cycle of this person at a speed (m/s) and step frequency (steps/min)."""
@@ -193,9 +211,11 @@ class _Manner:
         near = near / max(1.0, float(near.sum()))
         count = PERSON_RATIO * len(near)
         weights = near + (1.0 - near.sum()) * count / (1.0 + count) / len(near)
-        manner = np.tensordot(weights, self.residuals, axes=1)
-        coefficients, stance = walk_coefficients(
-            load_gait_model(), self.person, manner, leg_length, speed, step_frequency
+        none = np.zeros(self.residuals.shape[2:])
+        average, stance = walk_coefficients(load_gait_model(), self.person, none, leg_length, speed, step_frequency)
+        walk = WalkCurves(
+            average + np.tensordot(weights, self.residuals, axes=1),
+            np.clip(stance + weights @ self.stances, *STANCE),
+            0.5 + float(weights @ self.strikes),
         )
-        stance = float(np.clip(stance + weights @ self.stances, 0.56, 0.70))
-        return ArrangedCycle(speed, step_frequency, stance, coefficients)
+        return ArrangedCycle(speed, step_frequency, walk)

@@ -8,6 +8,7 @@ licence: CC BY 4.0     # what others may do with these captures
 source: our laboratory, 2025
 complete: true         # fill the grid of speed and step frequency with the gait model
 comfort_speed: 1.25    # m/s, optional: else the median speed of the clips
+symmetric: true        # optional: left and right are averaged; else a limp stays a limp
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from stimuli.importing.errors import ImportingError
 
 SEXES = {"female": "F", "woman": "F", "f": "F", "male": "M", "man": "M", "m": "M"}
 RANGES = {"height": (1.0, 2.3, "m"), "weight": (20.0, 250.0, "kg"), "age": (5.0, 110.0, "years")}
-KEYS = ("sex", *RANGES, "licence", "source", "complete", "comfort_speed")
+KEYS = ("sex", *RANGES, "licence", "source", "complete", "comfort_speed", "symmetric")
 
 
 @dataclass(frozen=True)
@@ -38,13 +39,14 @@ class Description:
     source: str
     complete: bool = False
     comfort_speed: float | None = None
+    symmetric: bool = False
 
 
 def read_description(folder: Path) -> Description:
     """The description in a folder's actor.yaml. Raises ImportingError naming what is missing or wrong."""
     path = folder / "actor.yaml"
     if not path.is_file():
-        raise ImportingError(f"{path} is missing; it says who was captured: {', '.join(KEYS[:-2])}")
+        raise ImportingError(f"{path} is missing; it says who was captured: {', '.join(KEYS[:-3])}")
     try:
         content = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
     except (YAMLError, OSError, ValueError) as error:
@@ -60,19 +62,24 @@ def read_description(folder: Path) -> Description:
     sex = str(content["sex"]).lower()
     if sex not in SEXES:
         raise ImportingError(f"{path}: sex: {content['sex']!r} is neither female nor male, which decides the body")
-    complete = content.get("complete", False)
-    if not isinstance(complete, bool):
-        raise ImportingError(f"{path}: complete: {complete!r} is neither true nor false")
     numbers = {key: _number(path, key, content[key], *bounds) for key, bounds in RANGES.items()}
     speed = content.get("comfort_speed")
     return Description(
         sex=SEXES[sex],
         licence=_text(path, "licence", content["licence"]),
         source=_text(path, "source", content["source"]),
-        complete=complete,
+        complete=_flag(path, "complete", content),
+        symmetric=_flag(path, "symmetric", content),
         comfort_speed=None if speed is None else _number(path, "comfort_speed", speed, 0.3, 2.5, "m/s"),
         **numbers,
     )
+
+
+def _flag(path: Path, key: str, content: dict[str, Any]) -> bool:
+    value = content.get(key, False)
+    if not isinstance(value, bool):
+        raise ImportingError(f"{path}: {key}: {value!r} is neither true nor false")
+    return value
 
 
 def _number(path: Path, key: str, value: Any, low: float, high: float, unit: str) -> float:

@@ -20,7 +20,7 @@ from stimuli.measure import delivered_gait
 from stimuli.retarget import Figure, scaled
 
 SPEED_ERROR = 0.001
-"""Share by which the delivered speed and step frequency may miss (issue 3, item 5)."""
+"""Share by which the delivered speed and step frequency may miss."""
 
 SAMPLES = 120
 """Poses per cycle of the check at import; `gaitlab actor check` draws more."""
@@ -62,7 +62,7 @@ def _actor(name: str, description: Description, walks: list[CapturedWalk], compl
     )
     body = load_body("woman" if person.sex == "F" else "man")
     leg = Figure(scaled(body.skeleton, person.height / body.stature)).leg_length
-    arrangement = arrange(walks, person, leg, complete)
+    arrangement = arrange(walks, person, leg, complete, description.symmetric)
     return StoredActor(
         person=person,
         licence=description.licence,
@@ -78,8 +78,7 @@ def _stored(cycle: ArrangedCycle, walks: list[CapturedWalk]) -> StoredCycle:
     return StoredCycle(
         speed=cycle.speed,
         step_frequency=cycle.step_frequency,
-        stance=cycle.stance,
-        coefficients=cycle.coefficients,
+        walk=cycle.walk,
         files=tuple(walk.file for walk in sources),
         captured=tuple(walk.gait for walk in sources),
         seam=max((walk.seam for walk in sources), default=0.0),
@@ -99,7 +98,7 @@ def _absent(walk: CapturedWalk) -> list[str]:
     return [
         name.split("_")[0]
         for index, name in enumerate(SIGNALS)
-        if np.isnan(walk.coefficients[index, 0]) and not name.endswith(("_y", "_z"))
+        if np.isnan(walk.curves.sides[:, index, 0]).any() and not name.endswith(("_y", "_z"))
     ]
 
 

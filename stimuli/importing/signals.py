@@ -1,8 +1,7 @@
 """A captured cycle as the signals of the gait model, so that captured and modelled cycles are drawn by one machine.
 
-Directions are kept, in the world and without the person's proportions. The walk is made symmetric: the mean of the
-right side and of the mirrored left side half a cycle later, as the gait model's own captures are. What a capture
-does not hold (no head, no arms) is nan. Knows one cycle; no file, no skeleton to be drawn.
+Directions are kept, in the world and without the person's proportions; so is what left and right do differently. What
+a capture does not hold (no head, no arms) is nan. Knows one cycle; no file, no skeleton to be drawn.
 """
 
 from __future__ import annotations
@@ -10,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from stimuli.cycle import Cycle, cycle_positions
-from stimuli.gait_model import HARMONICS, MIDLINE, MIRROR_SIGN, MODEL_ARM, SIDED, SIGNALS, basis
+from stimuli.gait_model import HARMONICS, MIDLINE, MIRROR_SIGN, MODEL_ARM, SIDED, SIGNALS, basis, shifted
 from stimuli.rotations import multiply, rotate, shortest_arc, to_exponential
 from stimuli.skeleton import Floats
 
@@ -23,18 +22,29 @@ KNEE_YAW_SHARE = 0.6
 
 
 def walk_signals(cycle: Cycle) -> Floats:
-    """(S, C) Fourier coefficients of a captured cycle, nan in the rows of what the capture does not hold."""
+    """(2, S, C) Fourier coefficients of the left and the right side of a captured cycle (gait_model.WalkCurves).
+
+    nan in the rows of what the capture does not hold.
+    """
     world, positions = _world_rotations(cycle), cycle_positions(cycle)
     leg = leg_length(cycle)
-    right, left = (_columns(cycle, world, positions, side, leg) for side in ("right", "left"))
-    half = len(left) // 2
-    middle = 0.5 * np.mean(right[:, _place("hips_shift")] + left[:, _place("hips_shift")])
-    for columns in (right, left):
+    left, right = (_columns(cycle, world, positions, side, leg) for side in ("left", "right"))
+    middle = float(np.mean(right[:, _place("hips_shift")]))
+    for columns in (left, right):
         for name in ("hips_shift", "foot_shift"):
             columns[:, _place(name)] -= middle
-    mirrored = np.roll(left * MIRROR_SIGN, -half, axis=0)
-    design = basis(np.arange(len(right)) / len(right))
-    return _symmetric(np.asarray((np.linalg.pinv(design) @ (0.5 * (right + mirrored))).T))
+    design = np.linalg.pinv(basis(cycle.phases))
+    return np.stack([shifted((design @ (left * MIRROR_SIGN)).T, cycle.left_strike), (design @ right).T])
+
+
+def evened(sides: Floats) -> Floats:
+    """(2, S, C) with both sides alike: their mean, as the gait model's own captures are."""
+    even = np.mean(sides, axis=0)
+    for index in range(len(MIDLINE)):
+        for harmonic in range(HARMONICS + 1):
+            if (harmonic % 2 == 0) != (MIRROR_SIGN[index] > 0):
+                even[index, 0 if harmonic == 0 else slice(2 * harmonic - 1, 2 * harmonic + 1)] = 0.0
+    return np.stack([even, even])
 
 
 def leg_length(cycle: Cycle) -> float:
@@ -100,7 +110,7 @@ def _leg(cycle: Cycle, world: Floats, positions: Floats, side: str, leg: float) 
     foot = rotate(world[:, ankle], rest)
     pitch = np.arctan2(foot[:, 1], np.hypot(foot[:, 0], foot[:, 2]))
     outward = rotate(world[:, hip], np.array([0.0, 0.0, 1.0]))
-    phase = (np.arange(len(pitch)) / len(pitch) + (0.5 if side == "left" else 0.0)) % 1.0
+    phase = (cycle.phases - (cycle.left_strike if side == "left" else 0.0)) % 1.0
     flat = (phase >= FLAT[0]) & (phase <= FLAT[1])
     return {
         "thigh": np.arctan2(thigh[:, 2], -thigh[:, 1]),
@@ -110,16 +120,6 @@ def _leg(cycle: Cycle, world: Floats, positions: Floats, side: str, leg: float) 
         "knee_yaw": KNEE_YAW_SHARE * np.arctan2(outward[:, 0], outward[:, 2]),
         "foot_shift": positions[:, ankle, 0] / leg,
     }
-
-
-def _symmetric(coefficients: Floats) -> Floats:
-    """(S, C) with the harmonics removed that a symmetric walk's midline cannot have (see gait_model.MIDLINE)."""
-    result = np.array(coefficients)
-    for index in range(len(MIDLINE)):
-        for harmonic in range(HARMONICS + 1):
-            if (harmonic % 2 == 0) != (MIRROR_SIGN[index] > 0):
-                result[index, 0 if harmonic == 0 else slice(2 * harmonic - 1, 2 * harmonic + 1)] = 0.0
-    return result
 
 
 def _place(name: str) -> int:

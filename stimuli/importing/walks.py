@@ -11,6 +11,7 @@ from stimuli.clip import Clip, world_positions
 from stimuli.cycle import Cycle, cycle_and_measures, seam_gaps
 from stimuli.events import GaitError, GaitMeasures, foot_paths
 from stimuli.gait import Gait
+from stimuli.gait_model import WalkCurves
 from stimuli.importing.errors import ImportingError
 from stimuli.importing.signals import leg_length, walk_signals
 from stimuli.motion_files.axes import sides_swapped
@@ -42,7 +43,7 @@ SAME_PERSON = {"markers": 0.05, "skeleton": 0.012}
 class CapturedWalk:
     """One clip's cycle, ready to be arranged.
 
-    coefficients: (S, C) signals of the gait model, nan where the capture holds none
+    curves: signals of the gait model and stance shares of both sides, nan where the capture holds none
     bones:        (4,) m, left thigh and shank, right thigh and shank
     gait:         over all steady strides of the clip, at which the cycle is drawn; loop: of the looped stride alone
     """
@@ -52,8 +53,7 @@ class CapturedWalk:
     gait: Gait
     loop: Gait
     measured: GaitMeasures
-    stance: float  # share of the cycle, nan where no toe-off was found
-    coefficients: Floats
+    curves: WalkCurves
     leg_length: float  # m
     bones: Floats
     names: str  # the table of joint names that fitted, "markers" for a skeleton made from markers
@@ -93,7 +93,6 @@ def read_walk(path: Path, rest: RestPose | None = None) -> CapturedWalk:
         raise ImportingError(f"{path}: {str(error).removeprefix(clip.name + ': ')}") from error
     _check_walk(clip, cycle, path)
     seam, seam_velocity = seam_gaps(cycle)
-    stance = [share for share in cycle.stance_share if np.isfinite(share)]
     parts = ("leftLowerLeg", "leftFoot", "rightLowerLeg", "rightFoot")
     return CapturedWalk(
         file=path.name,
@@ -101,8 +100,7 @@ def read_walk(path: Path, rest: RestPose | None = None) -> CapturedWalk:
         gait=measured.gait,
         loop=cycle.gait,
         measured=measured,
-        stance=float(np.mean(stance)) if stance else float("nan"),
-        coefficients=walk_signals(cycle),
+        curves=WalkCurves(walk_signals(cycle), np.array(cycle.stance_share), cycle.left_strike),
         leg_length=leg_length(cycle),
         bones=np.array([float(np.linalg.norm(cycle.offsets[cycle.joints.index(part)])) for part in parts]),
         names=clip.source.names,

@@ -136,7 +136,7 @@ def _ingredients(actor: Actor) -> Iterator[tuple[WalkCurves, float, float]]:
     """The walk, speed and step frequency of every cycle of the actor's table, in its order."""
     if actor.name in imported_names():
         for cycle in read_stored(actor.name).cycles:
-            yield WalkCurves.symmetric(cycle.coefficients, cycle.stance), cycle.speed, cycle.step_frequency
+            yield cycle.walk, cycle.speed, cycle.step_frequency
         return
     person, model = people()[actor.name], load_gait_model()
     manner = model.manner(dict(person.manner))

@@ -36,7 +36,7 @@ def cycle_contact(cycle: Cycle) -> CycleContact:
     positions = cycle_positions(cycle)
     speed = cycle.stride_length / cycle.stride_time
     slides, sinkings, knees, bones = [], [], [], []
-    for side, shift in (("right", 0.0), ("left", 0.5)):
+    for side, shift in (("right", 0.0), ("left", cycle.left_strike)):
         hip, knee, ankle = (
             positions[:, cycle.joints.index(f"{side}{part}")] for part in ("UpperLeg", "LowerLeg", "Foot")
         )

@@ -349,7 +349,7 @@ def test_the_bias_of_cmus_skeletons_is_the_laboratory_term_of_the_gait_models_re
 @needs_captures
 @pytest.mark.parametrize("path", sorted(CMU.glob("*.bvh"))[::4], ids=lambda path: path.stem)
 def test_a_captured_cycle_slides_until_its_feet_are_placed(path):
-    """Issue 3, item 3: mean slide <= 5 mm, peak <= 10 mm, sole not 3 mm below ground, knees not overstretched."""
+    """Mean slide <= 5 mm, peak <= 10 mm, sole not 3 mm below ground, knees not overstretched."""
     from stimuli.actor_library import StoredActor, StoredCycle
     from stimuli.actors import Person
     from stimuli.cycle import extract_cycle
@@ -363,7 +363,7 @@ def test_a_captured_cycle_slides_until_its_feet_are_placed(path):
     walk = read_walk(path)
     person = Person("x", "M", 30.0, walk.leg_length / 0.491, 65.0, 1.2, 0.006, "", ())
     ((_, (cycle,)),) = arrange([walk], person, walk.leg_length, complete=False).rows
-    stored = StoredCycle(cycle.speed, cycle.step_frequency, cycle.stance, cycle.coefficients)
+    stored = StoredCycle(cycle.speed, cycle.step_frequency, cycle.walk)
     drawn = actor_of(StoredActor(person, "", "", ((0.0, (stored,)),), True))
     gait = delivered_gait(drawn, cycle.speed, cycle.step_frequency)
     assert gait.slide_mean <= 5.0
