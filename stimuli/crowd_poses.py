@@ -115,7 +115,7 @@ def _places(constants: Constants, hips: Singles, turn: Singles) -> Singles:
 def _pose_legs(mix: Mix, phase: Floats, hips: Singles, turn: Singles) -> None:
     """Writes the legs' world rotations into turn, and lowers the hips (3, N) where a leg would not reach."""
     legs = mix.constants
-    own = np.stack([phase + 0.5, phase])
+    own = np.stack([phase - mix.left_strike, phase])
     own -= np.floor(own)
     clock = contact.clock(own, mix.stance.T)
     channels = np.stack([_blended(mix.table.feet[side], mix, clock[side]) for side in (0, 1)], axis=1)

@@ -30,7 +30,7 @@ def many_matrices(mix: Mix, phases: Floats, out: Singles | None = None) -> Singl
     table = mix.table
     phases = np.ascontiguousarray(phases, np.float64)
     figures = (table.offsets, table.rest, table.legs, table.soles)
-    steps = (mix.who, mix.rows, mix.weights, mix.samples, mix.stance, mix.ahead, mix.stride)
+    steps = (mix.who, mix.rows, mix.weights, mix.samples, mix.stance, mix.ahead, mix.left_strike, mix.stride)
     _pose_all(table.body, table.feet, *figures, *steps, phases, out)
     return out
 
@@ -49,6 +49,7 @@ def _pose_all(
     samples: Any,
     stance: Any,
     ahead: Any,
+    left_strike: Any,
     stride: Any,
     phases: Any,
     out: Any,
@@ -66,7 +67,7 @@ def _pose_all(
         _turn_upper_body(columns, turns, turn)
         places[0] = columns[4 * UPPER_COUNT :]
         for side in range(2):
-            own = phase if side == 1 else (phase + 0.5) % 1.0
+            own = phase if side == 1 else (phase - left_strike[n]) % 1.0
             clock = _clock(own, stance[n, side])
             _blend(feet[side], rows[n], weights[n], samples[n], clock, channels[side])
             place = ahead[n, side] + stride[n] * _footprint_travel(own, stance[n, side])

@@ -58,7 +58,8 @@ def one_walker(actor: Actor, speed: float, step_frequency: float, phase: float) 
         weights=weights.astype(np.float32)[None],
         samples=table.samples[:1],
         stance=contacts[None, :2],
-        ahead=contacts[None, 2:],
+        ahead=contacts[None, 2:4],
+        left_strike=contacts[None, 4],
         stride=np.array([120.0 * speed / step_frequency]),
     )
     matrices: Singles = poser()(mix, np.array([phase]))[0]

@@ -42,7 +42,7 @@ class WalkTable:
 
     body:      (rows, 55) x of the 13 UPPER joints by depth, then y, z, w, then the hips' x, y, z (m)
     feet:      (2, rows, 6) blend.FOOT_CHANNELS, left and right
-    contacts:  (cycles, 4) as CycleTable.contacts
+    contacts:  (cycles, 5) as CycleTable.contacts
     first_row: (cycles,) row of a cycle's first sample; the last of its samples + 1 rows repeats the first
     samples:   (cycles,) samples per cycle
     trees:     of each person, and first_cycle of each in the table
@@ -144,6 +144,7 @@ class Mix:
     samples: (N,) samples per cycle
     stance:  (N, 2) share of the cycle that the left and the right foot are on the ground
     ahead:   (N, 2) m, footprints ahead at heel strike; stride (N,) m
+    left_strike: (N,) phase of the left heel strike
     """
 
     table: WalkTable
@@ -153,6 +154,7 @@ class Mix:
     samples: Indices
     stance: Floats
     ahead: Floats
+    left_strike: Floats
     stride: Floats
 
     def __len__(self) -> int:
@@ -165,7 +167,7 @@ class Mix:
 
     def part(self, walkers: Any) -> Mix:
         """The mix of some of the walkers, chosen by a slice, a mask or numbers."""
-        names = ("who", "rows", "weights", "samples", "stance", "ahead", "stride")
+        names = ("who", "rows", "weights", "samples", "stance", "ahead", "left_strike", "stride")
         return replace(self, **{name: getattr(self, name)[walkers] for name in names})
 
 
@@ -194,7 +196,8 @@ def mixed(table: WalkTable, who: Indices, speed: Floats, step_frequency: Floats)
         weights=weights.astype(np.float32),
         samples=table.samples[cycles[:, 0]],
         stance=contacts[:, :2],
-        ahead=contacts[:, 2:],
+        ahead=contacts[:, 2:4],
+        left_strike=contacts[:, 4],
         stride=120.0 * speed / step_frequency,
     )
 

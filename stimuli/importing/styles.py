@@ -8,6 +8,7 @@ import numpy as np
 
 from stimuli.gait_model import Step, load_gait_model
 from stimuli.importing.errors import ImportingError
+from stimuli.importing.signals import evened
 from stimuli.importing.walks import CapturedWalk, read_walk
 from stimuli.methods.styles import Style
 from stimuli.motion_files.reading import read_clip
@@ -52,6 +53,6 @@ def _shared_rest(file: Path, normal: Path | None) -> RestPose | None:
 
 
 def _residual(walk: CapturedWalk) -> Floats:
-    """(S, C) signals less the model's at the same step; nan where the capture holds none."""
+    """(S, C) signals, both sides averaged, less the model's at the same step; nan where the capture holds none."""
     step = Step.of(walk.gait.speed, walk.gait.step_frequency, walk.leg_length)
-    return np.asarray(walk.coefficients - load_gait_model().coefficients(step))
+    return np.asarray(evened(walk.curves.sides)[0] - load_gait_model().coefficients(step))

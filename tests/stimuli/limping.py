@@ -25,7 +25,7 @@ NAMES = {
 
 
 def limping_actor(speed: float = 1.0, step_frequency: float = 96.0) -> Actor:
-    """A man of 1.78 m who spares his left leg: it swings less far, stands shorter, and the right step is the quicker."""
+    """A man of 1.78 m who spares his left leg: it swings less far and stands shorter, and his right step is quick."""
     model = load_gait_model()
     right = model.coefficients(Step.of(speed, step_frequency, 0.85), -0.5)
     left = right.copy()
