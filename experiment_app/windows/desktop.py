@@ -1,21 +1,32 @@
-"""The desktop window: GLFW for window and keys, moderngl for pixels. Knows no trial and no file."""
+"""The desktop window: GLFW for window and keys, a drawing thread for pixels. Knows no trial and no file.
+
+The main thread does nothing but wait for events, also while a frame is drawn and swapped, so every event is stamped
+when it arrives; for keys a better time is taken where the computer has one (`key_times`).
+"""
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 import glfw
-import moderngl
 
 from experiment_app.errors import UsageError
-from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Scene
-from experiment_app.walkers import drawn_walkers, measured_gait, pose_checksum
+from experiment_app.walkers import measured_gait
+from experiment_app.windows.display_facts import display_facts
+from experiment_app.windows.drawing import Drawing, Drawn, Order
+from experiment_app.windows.gamepad import Gamepad
+from experiment_app.windows.glfw_window import open_window
+from experiment_app.windows.key_times import Keyboard, Stamp, open_key_times
 from experiment_app.windows.keys import key_name
 from experiment_app.windows.pacing import Pacing, measured
+from experiment_app.windows.patch import Patch
+from experiment_app.windows.waiting import Waiting, WaitingForX, WaitingInGlfw
 from experiment_app.windows.window import Flip
 from protocols.events import Clicked, Closed, Event, FocusLost, KeyDown, KeyUp, Typed
 from protocols.session import Session
@@ -23,13 +34,30 @@ from protocols.session import Session
 PROBED_SWAPS = 20
 """Bare buffer swaps timed at the start to learn whether the driver waits for the display."""
 
+PAD_PERIOD = 0.002
+"""s between two looks at a gamepad, which has no events of its own."""
+
+SWITCH_INTERVAL = 0.0005
+"""s after which Python lets the thread that receives events interrupt the one that draws."""
+
+MOUSE_KEYS = {
+    glfw.MOUSE_BUTTON_LEFT: "left",
+    glfw.MOUSE_BUTTON_RIGHT: "right",
+    glfw.MOUSE_BUTTON_MIDDLE: "enter",
+}
+"""What the mouse's buttons are in trials, where there is nothing to click."""
+
+Device = Literal["mouse", "gamepad"]
+
 
 class DesktopWindow:
     """A window on a display. Use as a context manager.
 
     full_screen: cover display number `display` (from 1); otherwise a window of `size` (width, height).
-    refresh: Hz, overrides what the display reports. Raises UsageError when there is no display, no such
-    display, or no OpenGL 3.3.
+    refresh:  Hz, overrides what the display reports. keyboard: where the times of keys come from.
+    devices:  what else gives keys. patch: a square for a photodiode, or None.
+    origin:   the zero of the run's clock on `time.perf_counter`.
+    Raises UsageError when there is no display, no such display, or no OpenGL 3.3.
     """
 
     def __init__(
@@ -41,24 +69,36 @@ class DesktopWindow:
         size: tuple[int, int] = (1280, 720),
         refresh: float = 0.0,
         samples: int = 4,
+        keyboard: Keyboard = "auto",
+        devices: Sequence[Device] = (),
+        patch: Patch | None = None,
     ) -> None:
+        self.origin = time.perf_counter()
         self._events: list[Event] = []
-        self._origin = time.perf_counter()
-        self._page_scene: Scene | None = None
-        self._cost = 0.004
+        self._clicks: list[tuple[float, float, float]] = []
+        self._scene = Scene()
         self._requested = ""
-        self._handle, self._mode = _open(title, full_screen, display, size)
+        self._patch = patch
+        self._mouse = "mouse" in devices
+        self._pad = Gamepad() if "gamepad" in devices else None
+        self._handle, self._monitor = open_window(title, full_screen, display, size)
+        x_display = glfw.get_x11_display() if glfw.get_platform() == glfw.PLATFORM_X11 else None
         try:
-            glfw.make_context_current(self._handle)
-            self._context = moderngl.create_context(require=330)
-            width, height = glfw.get_framebuffer_size(self._handle)
-            self._renderer = Renderer(self._context, (width, height), self._pixel_ratio(), samples)
+            self._times = open_key_times(keyboard, x_display)
+            self._waiting: Waiting = WaitingForX(x_display) if x_display else WaitingInGlfw()
+            pixels = glfw.get_framebuffer_size(self._handle)
+            self._drawing = Drawing(self._handle, pixels, self._pixel_ratio(), samples, self._waiting.wake)
+        except UsageError:
+            glfw.terminate()
+            raise
         except Exception as error:
             glfw.terminate()
             raise UsageError(f"OpenGL 3.3 is needed and could not be started ({error}).") from None
+        self._switch_interval = sys.getswitchinterval()
+        sys.setswitchinterval(SWITCH_INTERVAL)
+        self._heard = self.now()
         self._connect()
-        self._pacing = self._probe(refresh)
-        self._last_flip = self._now()
+        self._intervals, self._pacing = self._probe(refresh)
 
     def __enter__(self) -> DesktopWindow:
         return self
@@ -68,7 +108,10 @@ class DesktopWindow:
 
     def close(self) -> None:
         """Closes the window and gives the display back."""
-        self._renderer.release()
+        sys.setswitchinterval(self._switch_interval)
+        self._drawing.close()
+        self._times.close()
+        self._waiting.close()
         glfw.terminate()
 
     @property
@@ -76,59 +119,66 @@ class DesktopWindow:
         """The refresh period, s."""
         return self._pacing.period
 
+    def now(self) -> float:
+        """s on the run's clock."""
+        return time.perf_counter() - self.origin
+
     def description(self) -> dict[str, Any]:
-        """What a journal says about this display."""
-        width, height = glfw.get_framebuffer_size(self._handle)
+        """What a journal says about this display, its driver and its inputs."""
+        info = self._drawing.info
         return {
             "window": "desktop",
-            "pixels": [width, height],
+            "pixels": list(glfw.get_framebuffer_size(self._handle)),
             "pixel_ratio": self._pixel_ratio(),
-            "reported_refresh_hz": self._mode.refresh_rate if self._mode else 0,
+            **display_facts(self._handle, self._monitor),
             "period_s": round(self._pacing.period, 6),
             "swap_waits_for_display": self._pacing.throttled,
-            "gl_renderer": self._context.info["GL_RENDERER"],
-            "gl_version": self._context.info["GL_VERSION"],
-            "samples": self._renderer.samples,
+            "bare_swaps_ms": [round(1e3 * interval, 3) for interval in self._intervals],
+            "gl_renderer": info["GL_RENDERER"],
+            "gl_vendor": info["GL_VENDOR"],
+            "gl_version": info["GL_VERSION"],
+            "samples": self._drawing.renderer.samples,
+            "keyboard": self._times.description(),
+            "devices": ["keyboard", *(["mouse"] * self._mouse), *(["gamepad"] * (self._pad is not None))],
+            "photodiode": self._patch.corner if self._patch else "",
+            "clock_resolution_ns": round(1e9 * time.get_clock_info("perf_counter").resolution, 3),
         }
 
     def request_end(self, reason: str) -> None:
         """Asks the session to end, as a signal handler does; safe to call at any time."""
         self._requested = reason
-        glfw.post_empty_event()
+        self._waiting.wake()
 
     # The three verbs
 
     def poll(self, session: Session) -> tuple[float, Sequence[Event]]:
-        """Waits, handling events as they come, until it is time to draw; then the time and the events since."""
-        draw_at = self._pacing.draw_time(self._last_flip, self._cost)
-        glfw.poll_events()
-        while (left := draw_at - self._now()) > 0.0:
-            glfw.wait_events_timeout(left)
+        """Waits, receiving events as they come, until it is time to draw; then the time and the events since."""
+        draw_at = self._pacing.draw_time()
+        self._receive(0.0)
+        while (left := draw_at - self.now()) > 0.0 and not self._requested:
+            self._receive(left)
         if self._requested:
-            self._events.append(Closed(self._now(), self._requested))
+            self._events.append(Closed(self.now(), self._requested))
             self._requested = ""
-        events, self._events = self._events, []
-        return self._now(), events
+        self._events += [Clicked(at, target) for at, target in self._targets()]
+        events, self._events = sorted(self._events, key=lambda event: event.time), []
+        return self.now(), events
 
     def next_display_time(self) -> float:
-        """The next refresh after now (s)."""
-        return self._pacing.display_time(self._now(), self._last_flip)
+        """The next refresh for which a frame drawn now can be ready (s)."""
+        return self._pacing.display_time(self.now())
 
     def show(self, scene: Scene) -> Flip:
-        """Draws the scene, swaps, waits until it is done."""
-        began, cpu, walkers = self._now(), time.thread_time(), drawn_walkers(scene)
-        self._page_scene = scene
-        size = glfw.get_framebuffer_size(self._handle)
-        if min(size) > 0:
-            self._renderer.resize(size, self._pixel_ratio())
-            self._renderer.draw(scene, walkers, self._context.screen)
+        """Draws the scene and swaps on the drawing thread, receiving events until it has been seen."""
+        self._scene = scene
         self._set_cursor(scene)
-        drawn, cpu_ms = self._now(), 1e3 * (time.thread_time() - cpu)
-        glfw.swap_buffers(self._handle)
-        self._context.finish()
-        self._last_flip = self._now()
-        self._cost = 0.8 * self._cost + 0.2 * (drawn - began)
-        return Flip(self._last_flip, cpu_ms, pose_checksum(walkers))
+        predicted = self._pacing.display_time(self.now())
+        swap_at = None if self._pacing.throttled else predicted + self.origin
+        size = glfw.get_framebuffer_size(self._handle)
+        self._drawing.begin(Order(scene, size, self._pixel_ratio(), swap_at, self._patch))
+        while (drawn := self._drawing.seen()) is None:
+            self._receive(0.1)
+        return self._flipped(drawn, predicted)
 
     def measure(self, scene: Scene) -> dict[str, float]:
         """The scene's walker measured as it is drawn."""
@@ -136,24 +186,21 @@ class DesktopWindow:
 
     # Inside
 
-    def _now(self) -> float:
-        return time.perf_counter() - self._origin
-
     def _pixel_ratio(self) -> float:
         return float(glfw.get_window_content_scale(self._handle)[0])
 
-    def _probe(self, refresh: float) -> Pacing:
+    def _flipped(self, drawn: Drawn, predicted: float) -> Flip:
+        flip = replace(drawn.flip, time=drawn.flip.time - self.origin)
+        self._pacing = self._pacing.after(flip.time, drawn.cost, predicted)
+        return flip
+
+    def _probe(self, refresh: float) -> tuple[list[float], Pacing]:
         """Times bare swaps, because a display's reported rate and a driver's setting are not to be believed."""
-        glfw.swap_interval(1)
-        times = []
-        for _ in range(PROBED_SWAPS):
-            self._context.screen.clear(0.0, 0.0, 0.0)
-            glfw.swap_buffers(self._handle)
-            self._context.finish()
-            times.append(self._now())
+        times = self._drawing.bare_swaps(PROBED_SWAPS)
         intervals = [later - earlier for earlier, later in pairwise(times[2:])]
-        reported = refresh or float(self._mode.refresh_rate if self._mode else 0)
-        return measured(reported, intervals)
+        mode = glfw.get_video_mode(self._monitor) if self._monitor else None
+        reported = refresh or float(mode.refresh_rate if mode else 0)
+        return intervals, replace(measured(reported, intervals), refresh=times[-1] - self.origin)
 
     def _set_cursor(self, scene: Scene) -> None:
         clickable = scene.page is not None and bool(scene.page.rows)
@@ -161,36 +208,64 @@ class DesktopWindow:
         if glfw.get_input_mode(self._handle, glfw.CURSOR) != mode:
             glfw.set_input_mode(self._handle, glfw.CURSOR, mode)
 
+    # Events
+
+    def _receive(self, timeout: float) -> None:
+        """Waits up to `timeout` (s) for events, notes their times, then lets GLFW report them."""
+        if timeout > 0.0:
+            self._waiting.wait(min(timeout, PAD_PERIOD) if self._pad else timeout)
+        self._times.collect()
+        glfw.poll_events()
+        self._times.forget()
+        self._heard = self.now()
+        if self._pad is not None:
+            self._events += self._pad.look(self._heard)
+
+    def _stamp(self, keycode: int, down: bool) -> Stamp:
+        """The event's time on the run's clock: the source's where it has one, else now.
+
+        An event that arrives has come after the last time all events were received, which bounds its error.
+        """
+        now = self.now()
+        stamp = self._times.take(keycode, down)
+        if stamp is None:
+            return Stamp(now, "arrival", round(1e3 * (now - self._heard), 3))
+        return replace(stamp, time=min(stamp.time - self.origin, now))
+
     def _connect(self) -> None:
         """Every callback stamps the time before anything else."""
 
         def on_key(_: Any, key: int, scancode: int, action: int, modifiers: int) -> None:
-            now = self._now()
-            if action == glfw.PRESS and key == glfw.KEY_TAB and modifiers & glfw.MOD_SHIFT:
-                self._events.append(KeyDown(now, "backtab", "arrival"))
-            elif action == glfw.PRESS:
-                self._events.append(KeyDown(now, key_name(key, scancode), "arrival"))
-            elif action == glfw.RELEASE:
-                self._events.append(KeyUp(now, key_name(key, scancode), "arrival"))
-            elif key == glfw.KEY_BACKSPACE:  # holding backspace empties a field; no task listens to it
-                self._events.append(KeyDown(now, "backspace", "arrival"))
+            if action == glfw.REPEAT and not self._times.notes_repeats:
+                stamp = Stamp(self.now(), "arrival", 0.0)
+            else:
+                stamp = self._stamp(scancode, action != glfw.RELEASE)
+            shifted = key == glfw.KEY_TAB and modifiers & glfw.MOD_SHIFT
+            name = "backtab" if shifted else key_name(key, scancode)
+            if action == glfw.RELEASE:
+                self._events.append(KeyUp(stamp.time, name, stamp.source, stamp.uncertainty_ms))
+            elif action == glfw.PRESS or key == glfw.KEY_BACKSPACE:  # repeats are no events, but may empty a field
+                self._events.append(KeyDown(stamp.time, name, stamp.source, stamp.uncertainty_ms))
 
         def on_text(_: Any, code: int) -> None:
-            self._events.append(Typed(self._now(), chr(code)))
+            self._events.append(Typed(self.now(), chr(code)))
 
         def on_button(_: Any, button: int, action: int, __: int) -> None:
-            now = self._now()
-            if button == glfw.MOUSE_BUTTON_LEFT and action == glfw.PRESS and self._page_scene is not None:
-                target = self._hit(self._page_scene)
-                if target is not None:
-                    self._events.append(Clicked(now, target))
+            now = self.now()
+            if self._scene.page is not None:
+                if button == glfw.MOUSE_BUTTON_LEFT and action == glfw.PRESS:
+                    self._clicks.append((now, *glfw.get_cursor_pos(self._handle)))
+            elif self._mouse and button in MOUSE_KEYS:
+                kind = KeyDown if action == glfw.PRESS else KeyUp
+                late = round(1e3 * (now - self._heard), 3)
+                self._events.append(kind(now, MOUSE_KEYS[button], "mouse", late))
 
         def on_focus(_: Any, focused: int) -> None:
             if not focused:
-                self._events.append(FocusLost(self._now()))
+                self._events.append(FocusLost(self.now()))
 
         def on_close(_: Any) -> None:
-            self._events.append(Closed(self._now()))
+            self._events.append(Closed(self.now()))
 
         self._callbacks = (on_key, on_text, on_button, on_focus, on_close)
         glfw.set_key_callback(self._handle, on_key)
@@ -199,53 +274,15 @@ class DesktopWindow:
         glfw.set_window_focus_callback(self._handle, on_focus)
         glfw.set_window_close_callback(self._handle, on_close)
 
-    def _hit(self, scene: Scene) -> str | None:
-        if scene.page is None:
+    def _targets(self) -> list[tuple[float, str]]:
+        """What the clicks since the last poll hit; looked up now, when nothing is being drawn."""
+        clicks, self._clicks = self._clicks, []
+        found = [(at, self._hit(x, y)) for at, x, y in clicks]
+        return [(at, target) for at, target in found if target is not None]
+
+    def _hit(self, x: float, y: float) -> str | None:
+        if self._scene.page is None:
             return None
-        x, y = glfw.get_cursor_pos(self._handle)
         width, height = glfw.get_window_size(self._handle)
         pixels = glfw.get_framebuffer_size(self._handle)
-        return self._renderer.hit(scene.page, x * pixels[0] / width, y * pixels[1] / height)
-
-
-def _open(title: str, full_screen: bool, display: int, size: tuple[int, int]) -> tuple[Any, Any]:
-    """A GLFW window with an OpenGL 3.3 core context, and the video mode of its display."""
-    problems: list[str] = []
-    glfw.set_error_callback(lambda code, text: problems.append(text.decode() if isinstance(text, bytes) else str(text)))
-    if not glfw.init():
-        raise UsageError(
-            "no display was found, so no window can be opened; sit at the computer's own screen, or use "
-            "`gaitlab demo` and `gaitlab simulate`, which need none."
-        )
-    monitors = glfw.get_monitors()
-    if monitors and not 1 <= display <= len(monitors):
-        glfw.terminate()
-        raise UsageError(f"--display {display}: this computer has displays 1 to {len(monitors)}.")
-    monitor = monitors[display - 1] if monitors else None
-    mode = glfw.get_video_mode(monitor) if monitor else None
-    for hint, value in (
-        (glfw.CONTEXT_VERSION_MAJOR, 3),
-        (glfw.CONTEXT_VERSION_MINOR, 3),
-        (glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE),
-        (glfw.OPENGL_FORWARD_COMPAT, True),
-        (glfw.DEPTH_BITS, 0),
-        (glfw.SCALE_TO_MONITOR, True),
-        (glfw.AUTO_ICONIFY, False),
-    ):
-        glfw.window_hint(hint, value)
-    if full_screen and mode is not None:
-        glfw.window_hint(glfw.REFRESH_RATE, mode.refresh_rate)
-        handle = glfw.create_window(mode.size.width, mode.size.height, title, monitor, None)
-    else:
-        handle = glfw.create_window(*size, title, None, None)
-        if handle and monitor:
-            left, top, width, height = glfw.get_monitor_workarea(monitor)
-            glfw.set_window_pos(handle, left + max(width - size[0], 0) // 2, top + max(height - size[1], 0) // 2)
-    if not handle:
-        reason = problems[-1] if problems else "no reason given"
-        glfw.terminate()
-        raise UsageError(
-            f"no window with OpenGL 3.3 could be opened ({reason}); update the graphics driver, or on Linux "
-            "install the system's OpenGL libraries (the README's first command does)."
-        )
-    return handle, mode
+        return self._drawing.renderer.hit(self._scene.page, x * pixels[0] / width, y * pixels[1] / height)
