@@ -16,8 +16,8 @@ MARGIN = 0.002
 FOLLOWING = 0.1
 """How much of the difference between an expected and an observed refresh the expectation follows at once."""
 
-FORGETTING = 0.97
-"""Share of the largest cost of drawing that is kept from frame to frame, so that it is forgotten in a second."""
+REMEMBERED = 16
+"""Frames whose cost of drawing is remembered."""
 
 
 @dataclass(frozen=True)
@@ -27,14 +27,20 @@ class Pacing:
     period:    s between refreshes. throttled: the driver's swap waits for the refresh.
     refresh:   s, the newest refresh: observed where the driver waits for it, else a deadline of our own, period by
                period from the first one, so that lateness never adds up.
-    cost:      s that drawing took lately, at most; lead: s more by which to begin earlier, grown by missed refreshes.
+    costs:     s that drawing the latest frames took.
+    lead:      s by which to begin earlier still, grown by missed refreshes.
     """
 
     period: float
     throttled: bool
     refresh: float = 0.0
-    cost: float = 0.004
+    costs: tuple[float, ...] = (0.004, 0.004)
     lead: float = MARGIN
+
+    @property
+    def cost(self) -> float:
+        """s to allow for drawing: what was needed lately at most, but for one frame, as one stall is no rule."""
+        return sorted(self.costs)[-2]
 
     def draw_time(self) -> float:
         """When to begin drawing (s): late enough to see the newest keys, early enough to be ready."""
@@ -49,8 +55,8 @@ class Pacing:
         """The pacing once a frame that took `cost` s to draw and was predicted for `predicted` was seen at `flip`."""
         missed = flip > predicted + 0.5 * self.period
         lead = min(self.lead + 0.0005, self.period) if missed else max(0.999 * self.lead, MARGIN)
-        kept = min(max(cost, FORGETTING * self.cost), self.period)
-        return replace(self, refresh=self._refresh(flip, predicted), cost=kept, lead=lead)
+        costs = (*self.costs[1 - REMEMBERED :], cost)
+        return replace(self, refresh=self._refresh(flip, predicted), costs=costs, lead=lead)
 
     def _refresh(self, flip: float, predicted: float) -> float:
         missed = max(round((flip - predicted) / self.period), 0)
