@@ -45,8 +45,11 @@ class RecordedStudy:
     left_out: tuple[tuple[str, str], ...] = field(default=())  # participant, reason
 
 
-def read_journal(path: Path, name: str = "") -> RecordedRun:
-    """One journal; raises AnalysisError naming the file and line where an inner line is damaged."""
+def read_records(path: Path, name: str = "") -> tuple[list[dict[str, Any]], bool]:
+    """Every record of a journal, the header first, and whether its last line was cut off.
+
+    Raises AnalysisError naming the file and line where an inner line is damaged.
+    """
     from protocols.record import decode_line
 
     name = name or path.name
@@ -66,11 +69,18 @@ def read_journal(path: Path, name: str = "") -> RecordedRun:
             ) from None
     if not records or records[0].get("kind") != "header":
         raise AnalysisError(f"{name}: the file does not begin with a complete header line, so it is not a usable run.")
-    header = records[0]
-    if header.get("format") != 1:
+    if records[0].get("format") != 1:
         raise AnalysisError(
-            f"{name}: written in format {header.get('format')!r}; this version reads format 1. Update it."
+            f"{name}: written in format {records[0].get('format')!r}; this version reads format 1. Update it."
         )
+    return records, torn
+
+
+def read_journal(path: Path, name: str = "") -> RecordedRun:
+    """One journal; raises AnalysisError naming the file and line where an inner line is damaged."""
+    name = name or path.name
+    records, torn = read_records(path, name)
+    header = records[0]
     answers, trials, repeated, ended = dict(header.get("group") or {}), {}, [], ""
     for place, record in enumerate(records, start=1):
         kind = record.get("kind")
@@ -92,11 +102,8 @@ def read_journal(path: Path, name: str = "") -> RecordedRun:
     )  # fmt: skip
 
 
-def read_study(folder: Path, unfinished: bool = False) -> RecordedStudy:
-    """Every run under `folder`/sourcedata, with those that do not count left out and named.
-
-    unfinished: also take runs that were begun but not finished.
-    """
+def journals_of(folder: Path) -> list[Path]:
+    """The journals of a study's folder, by participant and run; raises AnalysisError when there are none."""
     if not folder.is_dir():
         raise AnalysisError(f"There is no folder {folder}; name the study's folder inside the data folder.")
     paths = sorted(folder.glob("sourcedata/sub-*/run-*/journal.jsonl"), key=_natural)
@@ -104,6 +111,15 @@ def read_study(folder: Path, unfinished: bool = False) -> RecordedStudy:
         raise AnalysisError(
             f"{folder} holds no recorded run (sourcedata/sub-ID/run-N/journal.jsonl); record or simulate one first."
         )
+    return paths
+
+
+def read_study(folder: Path, unfinished: bool = False) -> RecordedStudy:
+    """Every run under `folder`/sourcedata, with those that do not count left out and named.
+
+    unfinished: also take runs that were begun but not finished.
+    """
+    paths = journals_of(folder)
     digest, warnings, left_out, runs = hashlib.sha256(), [], [], []
     for path in paths:
         name = path.relative_to(folder).as_posix()

@@ -13,6 +13,7 @@ from cyclopts import App, Parameter
 from rich.console import Console
 
 from experiment_app.body_commands import body_commands
+from experiment_app.data_commands import export, withdraw
 from experiment_app.errors import RunError, UsageError
 from experiment_app.motion_commands import actor_commands, clip
 from experiment_app.style_commands import style_commands
@@ -29,6 +30,8 @@ app.command(clip)
 app.command(actor_commands)
 app.command(body_commands)
 app.command(style_commands)
+app.command(export)
+app.command(withdraw)
 
 StudyArgument = Annotated[str, Parameter(help="A study file (YAML), or the name of a shipped study: walk_ratio.")]
 
@@ -196,6 +199,7 @@ def analyse(
 ) -> int:
     """Follow the study file's planned analysis: tables, figures and one self-contained report."""
     from analysis.planned import analyse as planned_analysis
+    from experiment_app.derived import Derived, note_derived
 
     with out.status("Analysing"):
         outcome = planned_analysis(folder, out_folder)
@@ -205,6 +209,8 @@ def analyse(
         out.print(sentence, markup=False)
     for path in outcome.paths:
         out.print(f"  {path}", markup=False)
+    names = tuple(path.relative_to(out_folder).as_posix() for path in outcome.paths)
+    note_derived(folder, Derived("report", "", str(out_folder.resolve()), names))
     return 0
 
 

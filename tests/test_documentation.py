@@ -89,6 +89,17 @@ def test_the_orders_of_the_study_file_page_are_orders():
     assert kinds == ["balanced_latin_square", "random", "adaptive"]
 
 
+def test_every_command_of_the_data_page_runs_in_order(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    commands = [line for block in blocks(ROOT / "docs" / "data.md", "sh") for line in block.splitlines()]
+    assert len(commands) == 5
+    for command in commands:
+        assert run(shlex.split(command)[1:]) == 0, (command, capfd.readouterr())
+    assert (tmp_path / "tables" / "trace.csv").stat().st_size > 10_000
+    assert (tmp_path / "bids" / "sub-S001").exists()
+    assert not (tmp_path / "bids" / "sub-S002").exists()
+
+
 @pytest.mark.slow
 def test_the_demo_without_a_screen_ends_with_a_report_tables_a_picture_and_a_film(tmp_path, capfd):
     assert run(["demo", "--off-screen", "--folder", str(tmp_path / "demo")]) == 0

@@ -1,0 +1,99 @@
+"""The commands about recorded data: export them, and take a participant out of them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+from rich.console import Console
+
+from experiment_app.derived import Derived, note_derived
+from experiment_app.errors import UsageError
+
+out = Console(highlight=False, soft_wrap=True)
+problems = Console(stderr=True, highlight=False, soft_wrap=True)
+
+StudyFolder = Annotated[Path, Parameter(help="The study's folder of data, as data/walk_ratio.")]
+
+
+def export(
+    folder: StudyFolder,
+    *,
+    to: Annotated[
+        Literal["bids", "psych-ds", "parquet", "csv"],
+        Parameter(help="BIDS and Psych-DS are whole data sets to share; csv and parquet one table a file."),
+    ],
+    out_folder: Annotated[Path, Parameter(name="--out", help="Folder of the data set; new, or an earlier export.")],
+) -> int:
+    """Make a data set that others can read from the recorded runs: tables, courses, frames and a data dictionary.
+
+    The journals stay as they are; made again from the same journals it is the same to the byte.
+    """
+    from analysis.exports.exporting import export as write_export
+
+    with problems.status("Exporting"):
+        done = write_export(folder, to, out_folder)
+    for note in done.notes:
+        problems.print(f"Note: {note}", style="yellow", markup=False)
+    out.print(
+        f"{done.participants} participants, {done.runs} runs, {len(done.paths)} files in {out_folder}", markup=False
+    )
+    if to == "bids":
+        out.print(f"Check it with: bids-validator-deno {out_folder}  (pip install 'gaitlab[validate]')", markup=False)
+    note_derived(folder, Derived("export", to, str(out_folder.resolve())))
+    return 0
+
+
+def withdraw(
+    folder: StudyFolder,
+    *,
+    participant: Annotated[str, Parameter(help="The ID of who withdraws.")],
+    yes: Annotated[bool, Parameter(negative="", help="Do it without asking.")] = False,
+) -> int:
+    """Remove a participant who withdraws: journals, exports and reports. It cannot be undone.
+
+    All that stays is that a place in the order of arrival is free again, for the next new participant.
+    """
+    from experiment_app.withdrawal import plan_withdrawal
+    from experiment_app.withdrawal import withdraw as carry_out
+
+    plan = plan_withdrawal(folder, participant)
+    out.print(f"Everything of participant {participant} in {plan.person} will be deleted.", markup=False)
+    for made in plan.made:
+        out.print(f"Then made again without {participant}: the {made.sentence}", markup=False)
+    if not yes and not _sure(participant):
+        out.print("Nothing was changed.", markup=False)
+        return 1
+    return 0 if carry_out(plan, lambda made: _make_again(folder, made), _say) else 1
+
+
+def _make_again(folder: Path, made: Derived) -> None:
+    """Makes an export or a report again from the journals that are left; removes an export nobody is left in."""
+    from analysis.exports.exporting import export as write_export
+    from analysis.exports.tree import remove_tree
+    from analysis.planned import analyse
+
+    if made.what == "report":
+        new = analyse(folder, Path(made.out)).paths
+        for stale in {Path(made.out) / name for name in made.files} - set(new):
+            stale.unlink(missing_ok=True)
+    elif any((folder / "sourcedata").glob("sub-*/run-*/journal.jsonl")):
+        write_export(folder, made.to, Path(made.out), over_edits=True)
+    else:
+        remove_tree(Path(made.out))
+
+
+def _sure(participant: str) -> bool:
+    """Whether the experimenter types the ID again; raises UsageError where nobody can answer."""
+    if not sys.stdin.isatty():
+        raise UsageError("nobody can be asked here; say --yes to delete the participant's data.")
+    try:
+        return input(f"This cannot be undone. Type {participant} to go on: ").strip() == participant
+    except EOFError:
+        return False
+
+
+def _say(sentence: str) -> None:
+    out.print(sentence, markup=False)

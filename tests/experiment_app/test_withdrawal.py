@@ -1,0 +1,112 @@
+"""Who withdraws is gone from journals, exports and reports; only a free place in the order of arrival stays."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from experiment_app import withdrawal
+from experiment_app.command import run
+from experiment_app.errors import UsageError
+from experiment_app.run_folder import participant_runs, places_given_back
+from experiment_app.withdrawal import plan_withdrawal
+from protocols.record import decode_line
+from tests.experiment_app.sessions import opened, play
+
+
+@pytest.fixture
+def data(tmp_path) -> Path:
+    for participant in ("P01", "WITHDRAWN77", "P03"):
+        play(opened(tmp_path / "data", participant))
+    return tmp_path / "data" / "walk_ratio"
+
+
+def holding(folder: Path, text: bytes) -> list[str]:
+    """Files under a folder whose name or content holds a text."""
+    return [str(p) for p in folder.rglob("*") if text.decode() in str(p) or (p.is_file() and text in p.read_bytes())]
+
+
+def test_a_withdrawal_reaches_journals_exports_and_reports_and_keeps_only_a_place(data, tmp_path, capfd):
+    for to in ("bids", "psych-ds", "csv"):
+        assert run(["export", str(data), "--to", to, "--out", str(tmp_path / to)]) == 0
+    assert run(["analyse", str(data), "--out", str(tmp_path / "report")]) == 0
+    assert len(holding(tmp_path, b"WITHDRAWN77")) > 10
+    assert run(["withdraw", str(data), "--participant", "WITHDRAWN77", "--yes"]) == 0
+    assert holding(tmp_path, b"WITHDRAWN77") == []
+    assert len(holding(tmp_path, b"P03")) > 10
+    (line,) = (data / "withdrawn.jsonl").read_text(encoding="utf-8").splitlines()
+    assert decode_line(line) == {"kind": "withdrawn", "participant_number": 2}
+    said = capfd.readouterr().out
+    assert "Place 2 in the order of arrival is free again" in said
+    assert said.count("Made again without participant WITHDRAWN77") == 4
+    assert "backups" in said
+
+
+def test_the_next_new_participant_takes_the_place_given_back_and_the_one_after_a_new_one(data):
+    assert run(["withdraw", str(data), "--participant", "WITHDRAWN77", "--yes"]) == 0
+    numbers = []
+    for participant in ("P08", "P09"):
+        play(opened(data.parent, participant))
+        numbers.append(participant_runs(data.parent, "walk_ratio", participant)[0].header["participant_number"])
+    assert numbers == [2, 4]
+    assert run(["withdraw", str(data), "--participant", "P08", "--yes"]) == 0
+    assert places_given_back(data) == [2]
+    play(opened(data.parent, "P10"))
+    assert participant_runs(data.parent, "walk_ratio", "P10")[0].header["participant_number"] == 2
+
+
+def test_a_withdrawal_that_was_killed_half_way_is_finished_by_the_same_command(data, tmp_path, monkeypatch):
+    run(["export", str(data), "--to", "csv", "--out", str(tmp_path / "csv")])
+
+    def killed(path: Path) -> None:
+        next(p for p in Path(path).rglob("*") if p.is_file()).unlink()
+        raise OSError(5, "the power failed")
+
+    monkeypatch.setattr(withdrawal.shutil, "rmtree", killed)
+    assert run(["withdraw", str(data), "--participant", "WITHDRAWN77", "--yes"]) == 1
+    monkeypatch.setattr(withdrawal.shutil, "rmtree", shutil.rmtree)
+    monkeypatch.undo()
+    assert run(["withdraw", str(data), "--participant", "WITHDRAWN77", "--yes"]) == 0
+    assert holding(tmp_path, b"WITHDRAWN77") == []
+    assert places_given_back(data) == [2]
+
+
+def test_when_the_last_one_withdraws_the_export_goes_too(tmp_path):
+    play(opened(tmp_path / "data", "P01"))
+    data = tmp_path / "data" / "walk_ratio"
+    run(["export", str(data), "--to", "bids", "--out", str(tmp_path / "bids")])
+    assert run(["withdraw", str(data), "--participant", "P01", "--yes"]) == 0
+    assert not (tmp_path / "bids").exists()
+
+
+def test_what_cannot_be_made_again_is_named_and_the_command_fails(data, tmp_path, capfd):
+    run(["export", str(data), "--to", "csv", "--out", str(tmp_path / "csv")])
+    (tmp_path / "csv" / ".gaitlab-export.json").unlink()
+    assert run(["withdraw", str(data), "--participant", "WITHDRAWN77", "--yes"]) == 1
+    assert "NOT made again: csv export" in capfd.readouterr().out
+    assert not (data / "sourcedata" / "sub-WITHDRAWN77").exists()
+
+
+def test_a_participant_who_is_not_there_and_one_who_is_sitting_at_the_screen_are_refused(data):
+    with pytest.raises(UsageError, match=r"no participant P99 .*there are: P01, P03, WITHDRAWN77"):
+        plan_withdrawal(data, "P99")
+    sitting = opened(data.parent, "P50")
+    with pytest.raises(UsageError, match="in use by another gaitlab"):
+        plan_withdrawal(data, "P50")
+    sitting.journal.close()
+
+
+def test_without_an_answer_nothing_is_deleted(data, monkeypatch, capfd):
+    assert run(["withdraw", str(data), "--participant", "WITHDRAWN77"]) == 2
+    assert "say --yes" in capfd.readouterr().err
+    assert (data / "sourcedata" / "sub-WITHDRAWN77").exists()
+
+
+def test_exports_and_reports_are_noted_once_however_often_they_are_made(data, tmp_path):
+    for _ in range(2):
+        run(["export", str(data), "--to", "csv", "--out", str(tmp_path / "csv")])
+    (line,) = (data / "derived.jsonl").read_text(encoding="utf-8").splitlines()
+    assert json.loads(line) == {"what": "export", "to": "csv", "out": str(tmp_path / "csv"), "files": []}
