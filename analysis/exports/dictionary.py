@@ -70,6 +70,7 @@ KNOWN = {
             "trial_interrupted": "begun, never finished",
             "key": "a key of the task was held",
             "focus_lost": "the window lost the keyboard",
+            "click": "something that answers was clicked",
             "page": "a page was read",
             "pause": "a pause or a break",
             "continued": "the run was opened again",
@@ -78,6 +79,8 @@ KNOWN = {
     ),
     "key": Column("Name of the key."),
     "page": Column("Name of the page."),
+    "target": Column("What was clicked."),
+    "track": Column("Of an adaptive order, the track whose answers placed the level; 0 without one."),
     "why": Column("Reason of a pause, of an end, or of the interruption before."),
     "source": Column("What gave the key's time: the X server, a keyboard queue, its arrival, a simulation."),
     "uncertainty_ms": Column("How far the key's time may be off.", "ms"),
@@ -143,6 +146,8 @@ def of_study(study: Mapping[str, Any]) -> dict[str, Column]:
         found[str(name)] = Column(
             f"Factor {name} of the design{where}.", unit, {cell(level): "" for level in levels or ()}
         )
+    for name in (study.get("participants") or {}).get("assigned") or ():
+        found[str(name)] = Column(f"Group of factor {name} that the program assigned the participant to.")
     for question in (study.get("participants") or {}).get("questions") or ():
         options = {str(value): str(text) for value, text in (question.get("options") or {}).items()}
         found[str(question["id"])] = Column(f"Answer to: {' '.join(str(question['prompt']).split())}", levels=options)

@@ -124,8 +124,10 @@ def _events(run: ExportedRun) -> Iterator[dict[str, Any]]:
         elif kind in MARKS or "time" not in record:
             continue
         else:  # a record of a later version, or of a device
-            more = {k: v for k, v in record.items() if k not in ("kind", "time") and not isinstance(v, list)}
-            row |= {"details": more} if more else {}
+            known = {name: record[name] for name in ("trial", "practice", "attempt", "target") if name in record}
+            left = record.keys() - {"kind", "time", *known}
+            more = {name: record[name] for name in record if name in left and not isinstance(record[name], list)}
+            row |= known | ({"details": more} if more else {})
         yield row
 
 

@@ -68,7 +68,7 @@ def _course(run: ExportedRun, task: Mapping[str, Any], records: Sequence[Timed])
     reach, keys = task.get("range") or {}, run.header["keys"]
     walk = _Setting(
         time=records[0].onset,
-        value=float(setting_in(task["start"], begun["factors"])),
+        value=float(setting_in(task["start"], {**(run.header.get("group") or {}), **begun["factors"]})),
         low=float(reach.get("minimum", 80.0)),
         high=float(reach.get("maximum", 120.0)),
         rate=float(task.get("rate", 10.0)),

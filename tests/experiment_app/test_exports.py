@@ -128,20 +128,20 @@ def test_the_course_between_two_corners_is_the_tasks_own_law(data):
     """Against the task played frame by frame at 60 Hz, where no pause interferes."""
     from protocols import adjustment
     from protocols.events import KeyUp, Shown
+    from protocols.stimulus import Walk
 
     task = adjustment.AdjustmentTask(80.0, 120.0, 10.0, 0.0)
     run = next(run for run in read_runs(data)[0] if run.participant == "P02")
     course = courses(run)[0]
     onset = next(course.corners)[0]
     keys = [t for t in run.of("key") if t.record["practice"] and t.record["trial"] == course.number]
-    trial = adjustment.begin(task, 1.0, next(course.corners)[1])
-    trial = adjustment.handle(trial, Shown(onset))
+    trial = adjustment.begin(task, Walk("T1", "", 1.0), next(course.corners)[1]).handle(Shown(onset))
     for timed in keys:
         while trial.time + 1 / 60 < timed.onset:
-            trial = adjustment.advance(trial, trial.time + 1 / 60)
+            trial = trial.advance(trial.time + 1 / 60)
             assert course.at(trial.time) == pytest.approx(trial.setting, abs=2e-5)
         event = KeyDown if timed.record["down"] else KeyUp
-        trial = adjustment.handle(trial, event(timed.onset, timed.record["key"]))
+        trial = trial.handle(event(timed.onset, timed.record["key"]))
 
 
 def test_an_interrupted_run_has_one_clock_and_only_the_last_attempt_of_a_trial_counts(data, tmp_path):
