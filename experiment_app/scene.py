@@ -37,6 +37,28 @@ class Walker:
     making: Making | None = None
 
 
+Palette = Literal["varied", "equal_luminance"]
+
+
+@dataclass(frozen=True)
+class Crowd:
+    """Many people walking the same way, along +Z; who, where and how follows from these values alone.
+
+    size:      walkers, half of them women.
+    variation: "1:N", one motion for N walkers, or "1", one motion for all women and one for all men.
+    seed:      of paths, speeds, sizes and which motions are chosen; pool: of the motions that there are to choose from.
+    palette:   colours differ in everything, or in hue and chroma only.
+    seconds:   s since the crowd began to walk.
+    """
+
+    size: int
+    variation: str = "1:1"
+    seed: int = 0
+    pool: int = 0
+    palette: Palette = "varied"
+    seconds: float = 0.0
+
+
 @dataclass(frozen=True)
 class Camera:
     """Where the scene is seen from.
@@ -156,6 +178,7 @@ class Scene:
     screen_angle: vertical visual angle of the whole picture for the viewer, degrees; 0 takes the camera's field of
                   view, which is the same when the perspective is true.
     lod:          level of detail that all walkers are forced to, 0 the finest; None chooses by size on the screen.
+    crowd:        more people, of whom each has a motion, a place and a look of its own.
     beside:       a second scene for the right half of the picture, this one then has the left half: each with its own
                   walkers, camera, ground, marks and lod. Page, caption and screen_angle are those of this scene and
                   for the whole picture.
@@ -170,11 +193,17 @@ class Scene:
     screen_angle: float = 0.0
     lod: int | None = None
     beside: Scene | None = None
+    crowd: Crowd | None = None
 
     @property
     def visible(self) -> bool:
         """Whether there is more to see than a page: somebody, or a place the camera stands at."""
-        return bool(self.walkers) or not self.camera.follows or (self.beside is not None and self.beside.visible)
+        return (
+            bool(self.walkers)
+            or self.crowd is not None
+            or not self.camera.follows
+            or (self.beside is not None and self.beside.visible)
+        )
 
     @property
     def everyone(self) -> tuple[Walker, ...]:

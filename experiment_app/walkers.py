@@ -9,7 +9,8 @@ from zlib import crc32
 
 import numpy as np
 
-from experiment_app.render.drawn import DrawnWalker
+from experiment_app.crowds import drawn_crowd, measured_crowd
+from experiment_app.render.drawn import Drawn, DrawnWalker
 from experiment_app.scene import Scene, Walker
 from stimuli.actors import Actor, load_actor
 from stimuli.bodies import body_for, load_body, scaled, shipped_names
@@ -49,9 +50,13 @@ def _resting_markers(actor: str) -> Floats:
     return resting(body.skeleton, chosen.height)
 
 
-def drawn_walkers(scene: Scene) -> tuple[DrawnWalker, ...]:
-    """Every walker of the scene, then of the scene beside it, with the matrices of its pose, at its place."""
-    drawn = tuple(_drawn(walker, scene.ground == "treadmill", scene.marks.seed) for walker in scene.walkers)
+def drawn_walkers(scene: Scene) -> tuple[Drawn, ...]:
+    """Every walker of the scene and its crowd, then those of the scene beside it, posed and in place."""
+    drawn: tuple[Drawn, ...] = tuple(
+        _drawn(walker, scene.ground == "treadmill", scene.marks.seed) for walker in scene.walkers
+    )
+    if scene.crowd is not None:
+        drawn += (drawn_crowd(scene.crowd),)
     return drawn + (drawn_walkers(scene.beside) if scene.beside is not None else ())
 
 
@@ -107,11 +112,14 @@ def own_step_frequency(actor: str, body: str, making: Making | None, speed: floa
 def measured_gait(scene: Scene) -> dict[str, float]:
     """Speed (m/s), step frequency (steps/min), step length (m), walk ratio (m·min) and foot slide (mm) as drawn.
 
-    Of the scene's first walker; empty without one. Those of the scene beside it are called beside_speed and so on.
+    Of the scene's first walker, or what measured_crowd says of its crowd; empty without either. Those of the
+    scene beside it are called beside_speed and so on.
     """
     if scene.beside is not None:
         beside = {f"beside_{name}": value for name, value in measured_gait(scene.beside).items()}
         return measured_gait(replace(scene, beside=None)) | beside
+    if scene.crowd is not None:
+        return measured_crowd(scene.crowd)
     if not scene.walkers:
         return {}
     walker = scene.walkers[0]

@@ -71,17 +71,10 @@ def flattened(pitch: Any) -> Any:
 
 
 def wanted_pitch(drawn: Floats) -> Floats:
-    """The inverse of `flattened`, by Newton's method from the asymptote."""
-    pitch = np.array(drawn, dtype=float)
-    pitch += np.sign(pitch) * FLAT_ZONE
-    for _ in range(60):
-        value = pitch**3 - drawn * pitch**2 - drawn * FLAT_ZONE**2
-        slope = 3 * pitch**2 - 2 * drawn * pitch
-        step = value / np.where(np.abs(slope) < 1e-9, 1e-9, slope)
-        pitch = pitch - step
-        if np.max(np.abs(step), initial=0.0) < 1e-13:
-            break
-    return pitch
+    """The inverse of `flattened`: the real root of p³ - d p² - d FLAT_ZONE², by Cardano's formula."""
+    d = np.asarray(drawn, dtype=float)
+    root = np.cbrt(d * (d * d / 27.0 + FLAT_ZONE * (0.5 * FLAT_ZONE + np.sqrt(d * d / 27.0 + 0.25 * FLAT_ZONE**2))))
+    return np.asarray(d / 3.0 + root + d * d / np.where(root == 0.0, 1.0, 9.0 * root))
 
 
 def toe_bend(pitch: Any, swing: Any) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import moderngl
@@ -81,12 +81,17 @@ class BodyOnGpu:
         return self.parts[0]
 
 
-def packed(surfaces: tuple[Surface, ...]) -> tuple[NDArray[np.void], NDArray[np.uint32]]:
-    """Vertices (V,) of VERTEX and triangles (T, 3) uint32 of all surfaces together."""
+def packed(
+    surfaces: tuple[Surface, ...], numbers: Sequence[int] | None = None
+) -> tuple[NDArray[np.void], NDArray[np.uint32]]:
+    """Vertices (V,) of VERTEX and triangles (T, 3) uint32 of all surfaces together.
+
+    numbers: material of each surface; their order if left out.
+    """
     vertices = np.zeros(sum(len(s.positions) for s in surfaces), VERTEX)
     triangles = []
     first = 0
-    for material, surface in enumerate(surfaces):
+    for material, surface in zip(numbers or range(len(surfaces)), surfaces, strict=True):
         part = vertices[first : first + len(surface.positions)]
         part["position"] = surface.positions
         part["normal"] = surface.normals
@@ -110,11 +115,17 @@ def materials(surfaces: tuple[Surface, ...]) -> tuple[bytes, bytes]:
     if len(surfaces) > MOST_MATERIALS:
         raise ValueError(f"a body has {len(surfaces)} materials; at most {MOST_MATERIALS} can be drawn")
     colours = np.zeros((MOST_MATERIALS, 4), np.float32)
-    finishes = np.zeros((MOST_MATERIALS, 4), np.float32)
     for row, surface in enumerate(surfaces):
         colours[row] = (*surface.colour, surface.roughness)
-        finishes[row, :3] = FINISHES.get(surface.name, CLOTH)
-    return colours.tobytes(), finishes.tobytes()
+    return colours.tobytes(), finishes_of([surface.name for surface in surfaces])
+
+
+def finishes_of(names: Sequence[str]) -> bytes:
+    """Finishes (24, 4) of materials with these names as float32 bytes."""
+    finishes = np.zeros((MOST_MATERIALS, 4), np.float32)
+    for row, name in enumerate(names):
+        finishes[row, :3] = FINISHES.get(name, CLOTH)
+    return finishes.tobytes()
 
 
 class BodyBuffers:

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
-from experiment_app.render.drawn import DrawnWalker
+from experiment_app.render.drawn import CrowdLook, DrawnCrowd, DrawnWalker
 from stimuli.body import Body
 from stimuli.skeleton import JOINTS, Floats
 
@@ -37,6 +38,12 @@ _RADII = np.array([radius for _, _, radius in _ALL])
 TEXELS = 1 + len(_ALL)
 HALF_SIZE = 0.58  # of the darkened square, per stature
 
+_OF_CROWDS = np.array([1, 3, 6, 9, 11, 14, 16])
+"""The balls that are left of a walker in a crowd: a foot, toes and shank of each leg, and the hips."""
+
+CROWD_TEXELS = 1 + len(_OF_CROWDS)
+CROWD_HALF_SIZE = 0.36
+
 
 def fill_occluders(rows: Floats, walkers: Sequence[DrawnWalker]) -> None:
     """Writes one row per walker: (x, y, z of the place, half size), then (x, y, z, radius) of each ball, m.
@@ -49,6 +56,25 @@ def fill_occluders(rows: Floats, walkers: Sequence[DrawnWalker]) -> None:
         row[0] = (*walker.place, HALF_SIZE * stature)
         row[1:, :3] = (matrices @ _balls(walker.body))[..., 0] + walker.place
         row[1:, 3] = _RADII * stature
+
+
+def crowd_occluders(crowd: DrawnCrowd, there: NDArray[np.intp]) -> Floats:
+    """(K, CROWD_TEXELS, 4) float32, as fill_occluders writes them, of the walkers `there` (K,) of a crowd."""
+    rows = np.empty((len(there), CROWD_TEXELS, 4), np.float32)
+    places = crowd.rows[there, 63, :3]
+    statures = crowd.cast.statures[there]
+    joints = 3 * _JOINTS[_OF_CROWDS][:, None] + np.arange(3)
+    matrices = crowd.rows[there[:, None, None], joints]
+    rows[:, 0, :3], rows[:, 0, 3] = places, CROWD_HALF_SIZE * statures
+    rows[:, 1:, :3] = (matrices @ _crowd_balls(crowd.cast)[there])[..., 0] + places[:, None]
+    rows[:, 1:, 3] = _RADII[_OF_CROWDS] * statures[:, None]
+    return rows
+
+
+@lru_cache(maxsize=8)
+def _crowd_balls(cast: CrowdLook) -> Floats:
+    """(N, balls, 4, 1) float32: as _balls, of each walker's body."""
+    return np.stack([_balls(body)[_OF_CROWDS] for body in cast.bodies])[cast.body]
 
 
 @lru_cache(maxsize=2048)

@@ -11,6 +11,7 @@ from experiment_app.render.cameras import Viewpoint
 from experiment_app.render.contact import TEXELS, fill_occluders
 from experiment_app.render.drawn import DrawnWalker
 from experiment_app.render.programs import build, set_if_used
+from stimuli.skeleton import Floats
 
 OCCLUDERS_UNIT = 1
 LIFT = 0.0015  # m above the ground, so that the square is not hidden by the ground itself
@@ -18,14 +19,15 @@ EVERYWHERE = (0.0, 0.0, 1e9, 1e9)
 
 
 class ContactPass:
-    """One square per walker, multiplied onto the ground."""
+    """One square per walker, multiplied onto the ground; texels: rows of occluders are so long."""
 
-    def __init__(self, context: moderngl.Context) -> None:
+    def __init__(self, context: moderngl.Context, texels: int = TEXELS) -> None:
         self._context = context
-        self._program = build(context, "contact.vert", "contact.frag", {"OCCLUDERS": str(TEXELS)})
+        self._texels = texels
+        self._program = build(context, "contact.vert", "contact.frag", {"OCCLUDERS": str(texels)})
         self._square = context.vertex_array(self._program, [])
         self._texture: moderngl.Texture | None = None
-        self._rows = np.zeros((0, TEXELS, 4), np.float32)
+        self._rows = np.zeros((0, texels, 4), np.float32)
         self._make_room(8)
 
     def draw(
@@ -37,8 +39,14 @@ class ContactPass:
         if len(walkers) > len(self._rows):
             self._make_room(1 << (len(walkers) - 1).bit_length())
         fill_occluders(self._rows, walkers)
+        self.draw_rows(self._rows[: len(walkers)], viewpoint, area)
+
+    def draw_rows(self, rows: Floats, viewpoint: Viewpoint, area: tuple[float, float, float, float]) -> None:
+        """The same of occluders (N, texels, 4) float32, N > 0."""
+        if len(rows) > len(self._rows):
+            self._make_room(1 << (len(rows) - 1).bit_length())
         assert self._texture is not None
-        self._texture.write(self._rows[: len(walkers)], viewport=(0, 0, TEXELS, len(walkers)))
+        self._texture.write(np.ascontiguousarray(rows), viewport=(0, 0, self._texels, len(rows)))
         self._texture.use(OCCLUDERS_UNIT)
         set_if_used(self._program, "occluders", OCCLUDERS_UNIT)
         set_if_used(self._program, "lift", LIFT)
@@ -47,7 +55,7 @@ class ContactPass:
         self._context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         self._context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
         self._context.fbo.depth_mask = False
-        self._square.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=len(walkers))
+        self._square.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=len(rows))
         self._context.fbo.depth_mask = True
         self._context.blend_func = moderngl.DEFAULT_BLENDING
 
@@ -60,6 +68,6 @@ class ContactPass:
     def _make_room(self, walkers: int) -> None:
         if self._texture is not None:
             self._texture.release()
-        self._rows = np.zeros((walkers, TEXELS, 4), np.float32)
-        self._texture = self._context.texture((TEXELS, walkers), 4, dtype="f4")
+        self._rows = np.zeros((walkers, self._texels, 4), np.float32)
+        self._texture = self._context.texture((self._texels, walkers), 4, dtype="f4")
         self._texture.filter = (moderngl.NEAREST, moderngl.NEAREST)

@@ -1,8 +1,11 @@
-"""What the renderer is given for each walker: a body, its joints' matrices at this instant, and a place."""
+"""What the renderer is given: each walker's body, joints' matrices at this instant and place; a crowd's as arrays."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
 
 from stimuli.body import Body
 from stimuli.skeleton import Floats
@@ -26,3 +29,36 @@ class DrawnWalker:
     matrices: Floats
     place: tuple[float, float, float] = (0.0, 0.0, 0.0)
     lines: Floats | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class CrowdLook:
+    """What does not change about a crowd of N walkers.
+
+    bodies:   B bodies with the same names of surfaces, each drawn for several walkers; body: (N,) which each has.
+    colours:  (L, materials, 4) float32 looks: linear rgb and roughness of every material; look: (N,) of each walker.
+    statures: (N,) m; a walker's matrices make its body that tall.
+    """
+
+    bodies: tuple[Body, ...]
+    materials: tuple[str, ...]
+    body: NDArray[np.intp]
+    colours: Floats
+    look: NDArray[np.intp]
+    statures: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnCrowd:
+    """A crowd at one instant.
+
+    rows:  (N, 64, 4) float32: the matrices as of a DrawnWalker (21 x 3 rows), then place (m) and number.
+    shown: (N,) 0 to 1, how much of each is there: less near the ends of the stretch the crowd walks.
+    """
+
+    cast: CrowdLook
+    rows: NDArray[np.float32]
+    shown: Floats
+
+
+Drawn = DrawnWalker | DrawnCrowd

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import moderngl
 
 from experiment_app.render.cameras import Viewpoint, as_uniform
@@ -17,11 +19,18 @@ class GroundPass:
 
     floor:       the fragment shader of the floor, "open_ground.frag" or "studio_floor.frag".
     half_street: m from the middle to the gutters of a street along z, None for open ground.
+    shadows:     what the shaders' shadow code is compiled with, see light.CONSTANTS.
     """
 
-    def __init__(self, context: moderngl.Context, floor: str, half_street: float | None = None) -> None:
+    def __init__(
+        self,
+        context: moderngl.Context,
+        floor: str,
+        half_street: float | None = None,
+        shadows: Mapping[str, str] = CONSTANTS,
+    ) -> None:
         self._context = context
-        constants = OUTDOORS if floor == "open_ground.frag" else CONSTANTS
+        constants = {**OUTDOORS, **shadows} if floor == "open_ground.frag" else dict(shadows)
         if half_street is not None:
             constants = {**constants, "HALF_STREET": f"{half_street:.3f}"}
         self._floor = build(context, "ground.vert", floor, constants)

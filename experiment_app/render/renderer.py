@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from experiment_app.render.drawn import DrawnWalker
+from experiment_app.render.drawn import Drawn
 from experiment_app.render.page_shapes import PAGE
 from experiment_app.render.pages import PagePainter
 from experiment_app.render.part_map import PartMap, PartMapTarget
@@ -65,7 +65,7 @@ class Renderer:
         self._stage.draw_parts(self._viewports, self._parts)
         return self._parts.take(frames_ago)
 
-    def draw(self, scene: Scene, drawn: Sequence[DrawnWalker], target: moderngl.Framebuffer) -> None:
+    def draw(self, scene: Scene, drawn: Sequence[Drawn], target: moderngl.Framebuffer) -> None:
         """Draws the scene over the whole target; drawn: `scene.everyone` in the same order, posed.
 
         The same scene gives the same pixels on the same driver. Allocates nothing once a scene with as many

@@ -8,7 +8,8 @@ import moderngl
 
 from experiment_app.render.cameras import NOTHING, Viewpoint, place_camera
 from experiment_app.render.contact_pass import EVERYWHERE, ContactPass
-from experiment_app.render.drawn import DrawnWalker
+from experiment_app.render.crowd_stage import CrowdStage
+from experiment_app.render.drawn import Drawn, DrawnCrowd, DrawnWalker
 from experiment_app.render.ground_pass import GroundPass
 from experiment_app.render.light import fit_sunlight
 from experiment_app.render.marks_pass import MarksPass
@@ -33,6 +34,7 @@ class Stage:
         self._walkers = WalkersPass(context)
         self._contact = ContactPass(context)
         self._marks: MarksPass | None = None
+        self._crowds: CrowdStage | None = None
         self._outdoors: GroundPass | None = None
         self._street_passes: tuple[GroundPass, StreetPass] | None = None
         self._indoors: tuple[GroundPass, TreadmillPass] | None = None
@@ -47,11 +49,15 @@ class Stage:
         """The level of detail of every walker of the last frame, -1 for one without a body."""
         return self._walkers.levels
 
-    def draw(self, scene: Scene, drawn: Sequence[DrawnWalker], size: tuple[int, int]) -> None:
+    def draw(self, scene: Scene, everyone: Sequence[Drawn], size: tuple[int, int]) -> None:
         """Draws into the bound framebuffer of a size (pixels), in linear light, seen from the first walker's camera."""
         picture = self._context.fbo
         width, height = size
+        drawn, crowd = parted(everyone)
         viewpoint = seen_from(scene, drawn, width / height)
+        if crowd is not None:
+            self._crowd_stage().draw(scene, crowd, viewpoint, size)
+            return
         if scene.ground == "plain" or (drawn and all(walker.lines is not None for walker in drawn)):
             self._draw_plain(scene, drawn, viewpoint, size)
             return
@@ -94,10 +100,14 @@ class Stage:
         target.begin()
         for view in viewports:
             width, height = view.area[2:]
-            viewpoint = seen_from(view.scene, view.drawn, width / height)
-            if len(viewports) > 1:  # the passes hold the walkers of the last view only
-                self._walkers.place(view.drawn, viewpoint, height, view.scene.lod)
+            drawn, crowd = parted(view.drawn)
+            viewpoint = seen_from(view.scene, drawn, width / height)
             target.look_at(view.area)
+            if crowd is not None:
+                self._crowd_stage().draw_parts(view.scene, crowd, viewpoint, height)
+                continue
+            if len(viewports) > 1:  # the passes hold the walkers of the last view only
+                self._walkers.place(drawn, viewpoint, height, view.scene.lod)
             self._walkers.draw_parts(viewpoint)
         target.end()
 
@@ -132,9 +142,15 @@ class Stage:
     def release(self) -> None:
         """Frees the GPU's memory."""
         several = (*(self._indoors or ()), *(self._street_passes or ()))
-        for part in (self._shadows, self._walkers, self._contact, self._marks, self._outdoors, *several):
+        always = (self._shadows, self._walkers, self._contact)
+        for part in (*always, self._marks, self._crowds, self._outdoors, *several):
             if part is not None:
                 part.release()
+
+    def _crowd_stage(self) -> CrowdStage:
+        if self._crowds is None:
+            self._crowds = CrowdStage(self._context)
+        return self._crowds
 
     def _open_ground(self) -> GroundPass:
         if self._outdoors is None:
@@ -151,6 +167,12 @@ class Stage:
         if self._indoors is None:
             self._indoors = GroundPass(self._context, "studio_floor.frag"), TreadmillPass(self._context)
         return self._indoors
+
+
+def parted(drawn: Sequence[Drawn]) -> tuple[tuple[DrawnWalker, ...], DrawnCrowd | None]:
+    """The walkers, and the crowd if there is one."""
+    crowds = [each for each in drawn if isinstance(each, DrawnCrowd)]
+    return tuple(each for each in drawn if isinstance(each, DrawnWalker)), crowds[0] if crowds else None
 
 
 def seen_from(scene: Scene, drawn: Sequence[DrawnWalker], aspect: float) -> Viewpoint:

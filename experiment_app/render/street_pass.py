@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import moderngl
 
 from experiment_app.render.cameras import Viewpoint
 from experiment_app.render.ground_pass import OUTDOORS
-from experiment_app.render.light import Sunlight
+from experiment_app.render.light import CONSTANTS, Sunlight
 from experiment_app.render.programs import build, set_if_used
 from experiment_app.render.shadow_map import set_light
 from experiment_app.render.street_model import HOUSES_AT, STRETCH, street_side
@@ -19,9 +20,9 @@ STRETCHES = 5  # drawn, the eye in the middle one; the haze has swallowed what i
 class StreetPass:
     """One side of one stretch, uploaded once."""
 
-    def __init__(self, context: moderngl.Context) -> None:
+    def __init__(self, context: moderngl.Context, shadows: Mapping[str, str] = CONSTANTS) -> None:
         self._context = context
-        self._program = build(context, "street.vert", "street.frag", OUTDOORS)
+        self._program = build(context, "street.vert", "street.frag", {**OUTDOORS, **shadows})
         self._buffer = context.buffer(street_side().tobytes())
         self._array = context.vertex_array(
             self._program, [(self._buffer, "3f4 3f4 4f4 4f4", "position", "normal", "paint", "wall")]

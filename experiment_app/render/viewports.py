@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from experiment_app.render.drawn import DrawnWalker
+from experiment_app.render.drawn import Drawn
 from experiment_app.scene import Scene
 
 Area = tuple[int, int, int, int]
@@ -20,22 +20,22 @@ class Viewport:
     """One scene of a picture, the walkers posed for it, and the pixels it covers."""
 
     scene: Scene
-    drawn: Sequence[DrawnWalker]
+    drawn: Sequence[Drawn]
     area: Area
 
 
-def viewports_of(scene: Scene, drawn: Sequence[DrawnWalker], size: tuple[int, int]) -> tuple[Viewport, ...]:
+def viewports_of(scene: Scene, drawn: Sequence[Drawn], size: tuple[int, int]) -> tuple[Viewport, ...]:
     """The views of a picture of `size`: one that fills it, or two with as many pixels each.
 
-    drawn: the scene's walkers, then those of the scene beside it. What is seen under the viewer's angle is the
-    whole picture, so both halves have the outer scene's.
+    drawn: the scene's walkers and its crowd, then those of the scene beside it. What is seen under the viewer's
+    angle is the whole picture, so both halves have the outer scene's.
     """
     width, height = size
     if scene.beside is None:
         return (Viewport(scene, drawn, (0, 0, width, height)),)
     left, right, _ = divide(size)
     beside = replace(scene.beside, screen_angle=scene.screen_angle)
-    first = len(scene.walkers)
+    first = len(scene.walkers) + (scene.crowd is not None)
     alone = replace(scene, beside=None)
     return Viewport(alone, drawn[:first], left), Viewport(beside, drawn[first:], right)
 

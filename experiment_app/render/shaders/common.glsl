@@ -26,6 +26,22 @@ vec2 turned_on(vec2 direction) {
 // How much of the sun reaches a point, 0..1; 1 and no work where it is not wanted. The penumbra widens with the distance to what casts the shadow
 // (percentage-closer soft shadows, Fernando 2005), with fixed taps so that equal scenes give equal pixels.
 // The loops' lengths depend on the point because software drivers run both sides of every `if`.
+#if BLOCKER_TAPS == 0
+// The same with a soft edge of one width everywhere, for crowds, whose shadow map is coarser than any penumbra.
+float sunlight(vec3 world, vec3 normal, bool wanted) {
+    vec3 at = (world_to_light * vec4(world + normal * SHADOW_OFFSET, 1.0)).xyz;
+    bool within = wanted && all(greaterThan(at.xy, vec2(0.0))) && all(lessThan(at.xy, vec2(1.0)));
+    vec2 reach = SHARPEST / light_extent.xy;
+    float depth = min(at.z, 1.0) - SHARPEST / light_extent.z;
+    float lit = 0.0;
+    int taps = within ? SHADOW_TAPS : 0;
+    for (int i = 0; i < taps; i++) {
+        vec2 corner = vec2(float(i & 1), float(i >> 1)) * 2.0 - 1.0;
+        lit += textureLod(shadow_map, vec3(at.xy + corner * reach, depth), 0.0);
+    }
+    return within ? lit / float(SHADOW_TAPS) : 1.0;
+}
+#else
 float sunlight(vec3 world, vec3 normal, bool wanted) {
     vec3 at = (world_to_light * vec4(world + normal * SHADOW_OFFSET, 1.0)).xyz;
     bool within = wanted && all(greaterThan(at.xy, vec2(0.0))) && all(lessThan(at.xy, vec2(1.0)));
@@ -58,6 +74,7 @@ float sunlight(vec3 world, vec3 normal, bool wanted) {
     }
     return blockers > 0.0 ? lit / float(SHADOW_TAPS) : 1.0;
 }
+#endif
 
 // Fits light beyond white into [0, 1] without shifting hue: straight below 0.8, then a soft shoulder.
 vec3 fit_to_display(vec3 colour) {

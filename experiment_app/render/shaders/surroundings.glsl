@@ -1,5 +1,9 @@
 // What lies behind everything, by direction; and the haze that lets the ground melt into it.
 
+#ifndef HAZE_REACH
+#define HAZE_REACH 62.0  // m
+#endif
+
 #ifdef OPEN_GROUND
 const vec3 HORIZON = vec3(0.735, 0.765, 0.785);
 const vec3 ZENITH = vec3(0.330, 0.455, 0.640);
@@ -13,7 +17,7 @@ vec3 background(vec3 direction) {
 
 vec3 haze(vec3 colour, vec3 offset) {
     float distance = length(offset);
-    float clear = exp(-pow(distance / 62.0, 1.35));
+    float clear = exp(-pow(distance / HAZE_REACH, 1.35));
     return mix(background(vec3(offset.x, 0.0, offset.z) / distance), colour, clear);
 }
 #else

@@ -1,8 +1,20 @@
 #version 330 core
 #include "common.glsl"
+#ifdef HAZE
+#include "surroundings.glsl"
+#endif
+#ifdef FADED
+#include "dither.glsl"
+#endif
 
 const int MOST_MATERIALS = 24;
+#ifdef CROWD
+uniform sampler2D palette;              // column: material, row: look; linear rgb, roughness
+flat in int look;
+flat in vec2 drawn_in;
+#else
 uniform vec4 colours[MOST_MATERIALS];   // linear rgb, roughness
+#endif
 uniform vec4 finishes[MOST_MATERIALS];  // skin, sheen, specular strength, unused
 
 in vec3 world_position;
@@ -39,7 +51,15 @@ float highlight(vec3 normal, vec3 to_eye, vec3 to_light, float roughness) {
 }
 
 void main() {
-    vec3 albedo = colours[surface].rgb;
+#ifdef FADED
+    if (outside(drawn_in)) discard;
+#endif
+#ifdef CROWD
+    vec4 paint = texelFetch(palette, ivec2(surface, look), 0);
+#else
+    vec4 paint = colours[surface];
+#endif
+    vec3 albedo = paint.rgb;
     float alpha = 1.0;
 #ifdef TEXTURED
     vec4 cover = covers[surface];
@@ -49,7 +69,7 @@ void main() {
     if (alpha < cover.z) discard;
     if (cover.y < 1.5) alpha = 1.0;
 #endif
-    float roughness = clamp(colours[surface].a, 0.2, 1.0);
+    float roughness = clamp(paint.a, 0.2, 1.0);
     vec4 finish = finishes[surface];
 
     vec3 to_eye = normalize(eye - world_position);
@@ -76,5 +96,8 @@ void main() {
     shine += sky_light(reflect(-to_eye, normal)) * open * smoothness * (0.04 + 0.4 * grazing * smoothness);
     colour += finish.z * shine;
 
+#ifdef HAZE
+    colour = haze(colour, world_position - eye);
+#endif
     pixel = vec4(fit_to_display(colour), alpha);
 }

@@ -12,6 +12,10 @@ out vec3 world_normal;
 centroid out float sky_seen;
 out vec2 sole;              // metres above the walked surface, kept for contact darkening
 flat out int surface;
+#ifdef CROWD
+flat out int look;
+flat out vec2 drawn_in;     // of the screen's noise
+#endif
 #ifdef TEXTURED
 in vec2 picture_at;
 out vec2 picture_place;
@@ -27,6 +31,11 @@ void main() {
     sole = vec2(skinned.y, 0.0);
     sky_seen = occlusion;
     surface = int(material);
+#ifdef CROWD
+    vec4 instance = texelFetch(instances, ivec2(first_walker + gl_InstanceID, 0), 0);
+    look = int(instance.w + 0.5);
+    drawn_in = instance.yz;
+#endif
 #ifdef TEXTURED
     picture_place = picture_at;
 #endif

@@ -1,0 +1,132 @@
+"""A scene's crowd to bodies, looks and joint matrices: everybody posed at once for the renderer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from experiment_app.render.drawn import CrowdLook, DrawnCrowd
+from experiment_app.scene import STREET_HALF_WIDTH, Crowd, Palette
+from stimuli.blend import CycleTable, WalkCycle
+from stimuli.blend_tree import Leaf
+from stimuli.crowd_bodies import crowd_body
+from stimuli.crowd_looks import Look, linear_rgb, looks
+from stimuli.crowd_motions import SEXES, figure_of, motion_of
+from stimuli.crowd_plan import CrowdPlan, plan_crowd
+from stimuli.crowd_posing import poser
+from stimuli.crowd_table import Mix, WalkTable
+from stimuli.skeleton import Floats
+
+STRETCH = 110.0  # m that a crowd walks along before it comes in again, where that is long enough for so many
+END = 26.0  # z (m) of the stretch's end: walkers go from there back to its beginning
+FADING = (8.0, 1.0)  # m at the beginning and the end within which walkers come and go
+THINNED = 2
+"""Every second of the 256 samples of a cycle is kept: 35 MB for 1000 motions, and no joint 1 mm elsewhere."""
+
+
+@dataclass(frozen=True, eq=False)
+class CrowdCast:
+    """Who is in a crowd, ready to be posed at any time."""
+
+    plan: CrowdPlan
+    mix: Mix
+    look: CrowdLook
+
+
+def drawn_crowd(crowd: Crowd) -> DrawnCrowd:
+    """Everybody of the crowd, posed and in place at its time."""
+    cast = crowd_cast(replace(crowd, seconds=0.0))
+    places = cast.plan.places(crowd.seconds)
+    rows = np.empty((crowd.size, 64, 4), np.float32)
+    matrices = rows[:, :63].reshape(crowd.size, 21, 3, 4)
+    poser()(cast.mix, cast.plan.phases(crowd.seconds), matrices)
+    rows[:, :63] *= cast.plan.sizes.astype(np.float32)[:, None, None]
+    rows[:, 63, 0] = places[:, 0]
+    rows[:, 63, 1] = 0.0
+    rows[:, 63, 2] = places[:, 1] + (END - cast.plan.length)
+    rows[:, 63, 3] = np.arange(crowd.size)
+    ends = np.minimum(places[:, 1] / FADING[0], (cast.plan.length - places[:, 1]) / FADING[1])
+    return DrawnCrowd(cast.look, rows, np.minimum(ends, 1.0))
+
+
+def measured_crowd(crowd: Crowd) -> dict[str, float]:
+    """How many walkers and motions; mean and SD of speed (m/s), step frequency (steps/min) and step length (m).
+
+    nearest_m: least distance of two people's middles at this time.
+    """
+    from scipy.spatial import cKDTree
+
+    plan = crowd_cast(replace(crowd, seconds=0.0)).plan
+    step_length = 60.0 * plan.speed / plan.step_frequency
+    measures = {"speed": plan.speed, "step_frequency": plan.step_frequency, "step_length": step_length}
+    found = {"walkers": float(crowd.size), "motions": float(len(plan.motions))}
+    for name, values in measures.items():
+        found |= {f"{name}_mean": float(values.mean()), f"{name}_sd": float(values.std())}
+    places = plan.places(crowd.seconds)
+    return found | {"nearest_m": float(cKDTree(places).query(places, k=2)[0][:, 1].min())}
+
+
+@lru_cache(maxsize=4)
+def crowd_cast(crowd: Crowd) -> CrowdCast:
+    """Who is in a crowd, at its beginning. Raises CrowdError for a crowd that there cannot be."""
+    plan = plan_crowd(crowd.size, crowd.variation, crowd.seed, crowd.pool, 2.0 * STREET_HALF_WIDTH, STRETCH)
+    return CrowdCast(plan, _mix(plan), _look(plan, crowd.palette))
+
+
+def _mix(plan: CrowdPlan) -> Mix:
+    """The crowd's motions in a table of two people, one on the body of each sex, and who walks which."""
+    cycles = {sex: [_thinned(motion_of(style).cycle) for style in plan.motions if style.sex == sex] for sex in SEXES}
+    table = WalkTable.of([(figure_of(sex), CycleTable.of(cycles[sex]), Leaf(0)) for sex in SEXES])
+    contacts = table.contacts[plan.motion]
+    return Mix(
+        table=table,
+        who=np.where(plan.women, 0, 1),
+        rows=table.first_row[plan.motion][:, None],
+        weights=np.ones((len(plan.motion), 1), np.float32),
+        samples=table.samples[plan.motion],
+        stance=contacts[:, :2],
+        ahead=contacts[:, 2:],
+        stride=120.0 * plan.speed / plan.step_frequency / plan.sizes,
+    )
+
+
+def _thinned(cycle: WalkCycle) -> WalkCycle:
+    return replace(
+        cycle, hips=cycle.hips[::THINNED], rotations=cycle.rotations[::THINNED], feet=cycle.feet[:, ::THINNED]
+    )
+
+
+def _look(plan: CrowdPlan, palette: Palette) -> CrowdLook:
+    """Looks dealt to the walkers of each sex in the plan's random order."""
+    everyone = [look for sex in SEXES for look in looks(sex, palette)]
+    look = np.empty(len(plan.motion), np.intp)
+    first = 0
+    for sex, own in zip(SEXES, (plan.women, ~plan.women), strict=True):
+        in_order = plan.order[own[plan.order]]
+        count = len(looks(sex, palette))
+        look[in_order] = first + np.arange(len(in_order)) % count
+        first += count
+    kinds = sorted({(each.body, each.hair, each.build) for each in everyone})
+    bodies = tuple(crowd_body(*kind) for kind in kinds)
+    body = np.array([kinds.index((each.body, each.hair, each.build)) for each in everyone])[look]
+    materials = tuple(surface.name for surface in bodies[0].levels[0])
+    colours = np.array([_colours(each, materials) for each in everyone], np.float32)
+    statures = np.array([each.stature for each in bodies])[body] * plan.sizes
+    return CrowdLook(bodies, materials, body, colours, look, statures)
+
+
+def _colours(look: Look, materials: tuple[str, ...]) -> Floats:
+    """(materials, 4) linear rgb and roughness of everything that is worn."""
+    worn = dict(look.colours)
+    if "skin" in worn:
+        light, red, yellow = worn["skin"]
+        worn["lip"] = (light - 12.0, red + 14.0, yellow - 2.0)
+    if "hair" in worn:
+        worn["brow"] = worn["lash"] = (0.7 * worn["hair"][0], *worn["hair"][1:])
+    rows = np.zeros((len(materials), 4))
+    for surface in crowd_body(look.body, look.hair, look.build).levels[0]:
+        colour = linear_rgb(np.array(worn[surface.name])) if surface.name in worn else surface.colour
+        rows[materials.index(surface.name)] = (*np.clip(colour, 0.0, 1.0), surface.roughness)
+    return rows

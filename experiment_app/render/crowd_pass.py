@@ -1,0 +1,189 @@
+"""Draws crowds: all bodies and levels of detail in one buffer, all poses in one texture, one draw per level."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import moderngl
+import numpy as np
+
+from experiment_app.render.body_buffers import LIT_FORMAT, LIT_NAMES, SHADOW_FORMAT, SHADOW_NAMES, finishes_of, packed
+from experiment_app.render.cameras import Viewpoint, as_uniform
+from experiment_app.render.crowd_levels import (
+    FAR_LEVEL,
+    Instances,
+    distances,
+    heights_on_screen,
+    seen_instances,
+    shadow_instances,
+    within_picture,
+)
+from experiment_app.render.drawn import CrowdLook, DrawnCrowd
+from experiment_app.render.light import ON_CROWDS, Sunlight
+from experiment_app.render.programs import build, set_if_used
+from experiment_app.render.shadow_map import set_light
+
+POSES_UNIT, INSTANCES_UNIT, PALETTE_UNIT = 0, 7, 8
+CROWD = {**ON_CROWDS, "CROWD": "1"}
+FAR = {**CROWD, "INFLUENCES": "3", "SHADOW_TAPS": "1"}
+HAZE, FADED = {"OPEN_GROUND": "1", "HAZE": "1"}, {"FADED": "1"}
+SHADED = 75.0  # m from the eye, beyond which the haze leaves little of a shadow
+
+
+class CrowdPass:
+    """The crowd of a frame: `place` once, then `draw_shadow` and `draw`; outdoors, haze lies between it and the eye."""
+
+    def __init__(self, context: moderngl.Context, outdoors: bool) -> None:
+        self._context = context
+        air = HAZE if outdoors else {}
+        self._lit = {
+            (far, faded): build(
+                context,
+                *(("crowd_far.vert", "crowd_far.frag") if far else ("walker.vert", "walker.frag")),
+                {**(FAR if far else CROWD), **air, **(FADED if faded else {})},
+            )
+            for far in (False, True)
+            for faded in (False, True)
+        }
+        self._shadow = build(context, "walker_shadow.vert", "nothing.frag", FAR)
+        self._parts = build(context, "part_map.vert", "part_map.frag", CROWD)
+        self._meshes: CrowdMeshes | None = None
+        self._poses = _table(context, 64, 1)
+        self._tables = [_table(context, 1, 1), _table(context, 1, 1)]
+        self._seen = self._casting = Instances(np.zeros((0, 4), np.float32), ())
+
+    def place(self, crowd: DrawnCrowd, viewpoint: Viewpoint, picture_height: int, forced: int | None = None) -> None:
+        """Uploads this frame's matrices and decides the levels of detail, unless one is forced."""
+        cast = crowd.cast
+        if self._meshes is None or self._meshes.cast is not cast:
+            if self._meshes is not None:
+                self._meshes.release()
+            programs = (*self._lit.values(), self._shadow, self._parts)
+            self._meshes = CrowdMeshes(self._context, cast, programs, bare=(self._shadow, self._parts))
+        levels = self._meshes.levels
+        places = crowd.rows[:, 63, :3]
+        distance = distances(viewpoint, places)
+        heights = heights_on_screen(viewpoint, distance, cast.statures, picture_height)
+        seen = within_picture(viewpoint, places, 0.7 * cast.statures)
+        self._seen = seen_instances(np.where(seen, heights, 0.0), crowd.shown, cast.body, cast.look, levels, forced)
+        casting = (distance < SHADED) & (crowd.shown > 0.5) & within_picture(viewpoint, places, 1.6 * cast.statures)
+        self._casting = shadow_instances(heights, casting, cast.body, levels)
+        self._poses = _written(self._context, self._poses, crowd.rows)
+        for number, instances in enumerate((self._seen, self._casting)):
+            self._tables[number] = _written(self._context, self._tables[number], instances.table[None])
+
+    @property
+    def drawn_levels(self) -> dict[int, int]:
+        """How many walkers were drawn at each level of detail; near a threshold one counts for both."""
+        counts: dict[int, int] = {}
+        for batch in self._seen.batches:
+            counts[batch.level] = counts.get(batch.level, 0) + batch.count
+        return counts
+
+    def draw_shadow(self, sunlight: Sunlight) -> None:
+        """Draws the depth of everybody into the bound shadow map."""
+        self._shadow["world_to_shadow_clip"].write(as_uniform(sunlight.world_to_clip))
+        self._render(self._shadow, self._casting, 1)
+
+    def draw(self, viewpoint: Viewpoint, sunlight: Sunlight) -> None:
+        """Draws everybody into the bound framebuffer."""
+        assert self._meshes is not None
+        self._context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        self._meshes.palette.use(PALETTE_UNIT)
+        for (far, faded), program in self._lit.items():
+            set_if_used(program, "world_to_clip", viewpoint.matrix_bytes)
+            set_if_used(program, "palette", PALETTE_UNIT)
+            set_if_used(program, "finishes", self._meshes.finishes)
+            set_light(program, sunlight, viewpoint.eye)
+            self._render(program, self._seen, 0, (far, faded))
+
+    def draw_parts(self, viewpoint: Viewpoint) -> None:
+        """Draws joint and walker of every pixel into the bound part map."""
+        set_if_used(self._parts, "world_to_clip", viewpoint.matrix_bytes)
+        self._render(self._parts, self._seen, 0)
+
+    def _render(
+        self, program: moderngl.Program, instances: Instances, table: int, only: tuple[bool, bool] | None = None
+    ) -> None:
+        """Draws batches of instances; only: those that are (far, faded)."""
+        assert self._meshes is not None
+        self._poses.use(POSES_UNIT)
+        self._tables[table].use(INSTANCES_UNIT)
+        set_if_used(program, "poses", POSES_UNIT)
+        set_if_used(program, "instances", INSTANCES_UNIT)
+        array = self._meshes.arrays[program]
+        for batch in instances.batches:
+            if only is None or only == (batch.level >= FAR_LEVEL, batch.faded):
+                first, count = self._meshes.parts[batch.body][batch.level]
+                program["first_walker"].value = batch.first
+                array.render(moderngl.TRIANGLES, vertices=count, first=first, instances=batch.count)
+
+    def release(self) -> None:
+        """Frees the GPU's memory."""
+        programs = (*self._lit.values(), self._shadow, self._parts)
+        for part in (self._meshes, self._poses, *self._tables, *programs):
+            if part is not None:
+                part.release()
+
+
+class CrowdMeshes:
+    """Every level of every body of a crowd in one buffer, and the looks.
+
+    bare: programs that need places only; parts: per body and level, first index and count of indices
+    """
+
+    def __init__(
+        self,
+        context: moderngl.Context,
+        cast: CrowdLook,
+        programs: Sequence[moderngl.Program],
+        bare: Sequence[moderngl.Program],
+    ) -> None:
+        self.cast = cast
+        numbers = {name: number for number, name in enumerate(cast.materials)}
+        self.parts: list[list[tuple[int, int]]] = []
+        vertices, indices = [], []
+        first_vertex = first_index = 0
+        for body in cast.bodies:
+            self.parts.append([])
+            for surfaces in body.levels:
+                own, triangles = packed(surfaces, [numbers[surface.name] for surface in surfaces])
+                vertices.append(own)
+                indices.append(triangles.ravel() + np.uint32(first_vertex))
+                self.parts[-1].append((first_index, triangles.size))
+                first_vertex += len(own)
+                first_index += triangles.size
+        self.levels = min(len(body.levels) for body in cast.bodies)
+        self._vertices = context.buffer(np.concatenate(vertices).tobytes())
+        self._indices = context.buffer(np.concatenate(indices).tobytes())
+        whole = (self._vertices, LIT_FORMAT, *LIT_NAMES)
+        places = (self._vertices, SHADOW_FORMAT, *SHADOW_NAMES)
+        self.arrays = {
+            program: context.vertex_array(program, [places if program in bare else whole], self._indices)
+            for program in programs
+        }
+        self.palette = _table(context, *cast.colours.shape[1::-1])
+        self.palette.write(np.ascontiguousarray(cast.colours, np.float32))
+        self.finishes = finishes_of(cast.materials)
+
+    def release(self) -> None:
+        """Frees the GPU's memory."""
+        for part in (*self.arrays.values(), self._vertices, self._indices, self.palette):
+            part.release()
+
+
+def _table(context: moderngl.Context, columns: int, rows: int) -> moderngl.Texture:
+    texture = context.texture((columns, rows), 4, dtype="f4")
+    texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+    return texture
+
+
+def _written(context: moderngl.Context, texture: moderngl.Texture, data: np.ndarray) -> moderngl.Texture:
+    """The texture, or a larger one in its place, with data (rows, columns, 4) float32 in its corner."""
+    rows, columns = data.shape[:2]
+    if columns > texture.width or rows > texture.height:
+        texture.release()
+        texture = _table(context, max(columns, texture.width), max(rows, texture.height))
+    if columns and rows:
+        texture.write(data, viewport=(0, 0, columns, rows))
+    return texture

@@ -1,0 +1,170 @@
+"""Crowds as drawn: who, where and how as planned; the same pixels for the same scene; nobody pops."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from experiment_app.crowds import END, crowd_cast, drawn_crowd
+from experiment_app.render.cameras import place_camera
+from experiment_app.render.crowd_levels import BAND, HEIGHTS, levels_of, seen_instances, shadow_instances
+from experiment_app.render.renderer import Renderer
+from experiment_app.scene import Camera, Crowd, Scene
+from experiment_app.walkers import drawn_walkers, measured_gait
+from experiment_app.windows.offscreen import offscreen_context
+from stimuli.actors import load_actor
+from stimuli.blend import CycleTable
+from stimuli.blend_tree import Leaf
+from stimuli.crowd_motions import figure_of, motion_of
+from stimuli.walker import drawn_pose, skin_matrices
+
+SIZE = (320, 180)
+CAMERA = Camera("elevated", 30.0, 9.0, 40.0, 180.0)
+CROWD = Crowd(60, "1:10", seed=2, seconds=3.0)
+
+
+def pixels(*scenes, size=SIZE, samples=1):
+    context = offscreen_context()
+    target = context.simple_framebuffer(size)
+    renderer = Renderer(context, size, 1.0, samples)
+    drawn = []
+    for scene in scenes:
+        renderer.draw(scene, drawn_walkers(scene), target)
+        drawn.append(renderer.read_pixels(target).astype(int))
+    renderer.release()
+    context.release()
+    return drawn
+
+
+def street(seconds=3.0, **changed):
+    return Scene((), CAMERA, "street", crowd=replace(CROWD, seconds=seconds), **changed)
+
+
+def test_everybody_is_posed_as_their_motion_says_and_stands_where_the_plan_says():
+    crowd, plan = drawn_crowd(CROWD), crowd_cast(replace(CROWD, seconds=0.0)).plan
+    places, phases = plan.places(3.0), plan.phases(3.0)
+    np.testing.assert_allclose(crowd.rows[:, 63, 0], places[:, 0], atol=1e-5)
+    np.testing.assert_allclose(crowd.rows[:, 63, 2], places[:, 1] + END - plan.length, atol=1e-4)
+    for walker in range(0, CROWD.size, 7):
+        motion = motion_of(plan.motions[plan.motion[walker]])
+        alone = replace(
+            load_actor("F1"), figure=figure_of(motion.style.sex), table=CycleTable.of([motion.cycle]), tree=Leaf(0)
+        )
+        speed = motion.step_length * plan.step_frequency[walker] / 60.0
+        pose = drawn_pose(alone, speed, plan.step_frequency[walker], phases[walker])
+        expected = plan.sizes[walker] * skin_matrices(alone, pose)
+        got = crowd.rows[walker, :63].reshape(21, 3, 4)
+        # every second sample of a cycle is kept: no joint is more than 2 mm elsewhere
+        np.testing.assert_allclose(got, expected, atol=4e-3)
+        moved = plan.sizes[walker] * speed
+        assert moved == pytest.approx(plan.speed[walker])
+
+
+def test_the_same_crowd_has_the_same_pixels_whatever_was_drawn_before():
+    first, _, again = pixels(street(3.0), street(9.0), street(3.0))
+    (alone,) = pixels(street(3.0))
+    np.testing.assert_array_equal(first, again)
+    np.testing.assert_array_equal(first, alone)
+
+
+def test_a_crowd_casts_shadows_and_touches_the_ground():
+    empty, people = pixels(Scene((), CAMERA, "street"), street())
+    darker = (people.sum(axis=2) < 0.75 * empty.sum(axis=2)).mean()
+    assert 0.002 < darker < 0.3
+
+
+def test_two_crowds_stand_side_by_side():
+    scene = street()
+    together, alone = pixels(replace(scene, beside=scene), scene, size=(640, 180))
+    left, right = together[:, :319], together[:, -319:]
+    np.testing.assert_array_equal(left, right)
+    assert np.abs(left - alone[:, :319]).max() > 0
+
+
+def test_the_part_map_knows_the_walkers_of_a_crowd():
+    context = offscreen_context()
+    target = context.simple_framebuffer(SIZE)
+    renderer = Renderer(context, SIZE, 1.0, 1)
+    scene = street()
+    drawn = drawn_walkers(scene)
+    renderer.draw(scene, drawn, target)
+    parts = renderer.draw_parts()
+    viewpoint = place_camera(CAMERA, SIZE[0] / SIZE[1], 1.7, (0.0, 0.0, 0.0))
+    found = 0
+    (crowd,) = drawn
+    for walker, (place, stature) in enumerate(zip(crowd.rows[:, 63, :3], crowd.cast.statures, strict=True)):
+        clip = viewpoint.matrix @ np.append(place + np.array([0.0, 0.75 * stature, 0.0]), 1.0)
+        x, y = (0.5 + 0.5 * clip[0] / clip[3]) * SIZE[0], (0.5 - 0.5 * clip[1] / clip[3]) * SIZE[1]
+        part = parts.at(x, y)
+        found += part.walker == walker and part.region == "torso"
+    renderer.release()
+    context.release()
+    assert found > 0.6 * CROWD.size  # the others stand behind somebody or out of the picture
+
+
+def test_nobody_is_drawn_in_more_or_less_than_all_of_their_pixels():
+    heights = np.linspace(1.0, 700.0, 5000)
+    nobody = np.zeros(len(heights), int)
+    rows, low, high, _ = seen_instances(heights, np.ones(len(heights)), nobody, nobody, 6, None).table.T
+    covered = np.zeros(len(heights))
+    np.add.at(covered, rows.astype(int), high - low)
+    np.testing.assert_allclose(covered, 1.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("threshold", HEIGHTS)
+def test_a_level_changes_little_by_little_across_its_threshold(threshold):
+    heights = threshold * np.linspace(1.0 - 2 * BAND, 1.0 + 2 * BAND, 401)
+    level, share = levels_of(heights, 6)
+    detail = level + (1.0 - share)  # goes from the coarser level's number to the finer's
+    steps = np.diff(detail)
+    assert (steps <= 1e-9).all()
+    assert np.abs(steps).max() < 0.011
+    assert detail[0] - detail[-1] == pytest.approx(1.0)
+
+
+def test_a_forced_level_is_everybodys():
+    heights = np.array([10.0, 100.0, 600.0])
+    for forced in (0, 2, 9):
+        instances = seen_instances(heights, np.ones(3), np.zeros(3, int), np.zeros(3, int), 6, forced)
+        assert [(batch.level, batch.count) for batch in instances.batches] == [(min(forced, 5), 3)]
+
+
+def test_batches_are_one_per_body_and_level_and_hold_everybody_once():
+    rng = np.random.default_rng(1)
+    heights, body = rng.uniform(5.0, 600.0, 500), rng.integers(0, 4, 500)
+    shown = np.where(rng.random(500) < 0.1, rng.random(500), 1.0)
+    instances = seen_instances(heights, shown, body, body, 6, None)
+    keys = [(batch.body, batch.level, batch.faded) for batch in instances.batches]
+    assert len(keys) == len(set(keys))
+    for batch in instances.batches:
+        rows = instances.table[batch.first : batch.first + batch.count, 0].astype(int)
+        assert (body[rows] == batch.body).all()
+        shares = instances.table[batch.first : batch.first + batch.count, 1:3]
+        assert (((shares[:, 0] > 0) | (shares[:, 1] < 1)) == batch.faded).all()
+    casting = shadow_instances(heights, shown > 0.5, body, 6)
+    assert sorted(casting.table[:, 0].astype(int)) == np.flatnonzero(shown > 0.5).tolist()
+
+
+@pytest.mark.slow
+def test_levels_change_without_a_jump_in_the_picture():
+    """The largest change of one frame, of all in which somebody changes level, is no larger than without changes."""
+    times = 3.0 + np.arange(24) / 60.0
+    size = (640, 360)
+
+    def changes(lod):
+        frames = pixels(*(street(t, lod=lod) for t in times), size=size)
+        blocks = [np.abs(b - a).mean(axis=2).reshape(45, 8, 80, 8).mean(axis=(1, 3)) for a, b in pairwise(frames)]
+        return np.array(blocks)
+
+    by_size, fixed = changes(None), changes(2)
+    assert np.quantile(by_size, 0.999) < 1.25 * np.quantile(fixed, 0.999)
+
+
+def test_what_a_crowd_walks_is_measured():
+    gait = measured_gait(street())
+    assert gait["walkers"] == 60
+    assert gait["motions"] == 6
+    assert gait["step_length_mean"] == pytest.approx(0.77, abs=0.05)
+    assert gait["nearest_m"] > 0.55
+    assert 1.3 < gait["speed_mean"] < 1.8
