@@ -87,7 +87,8 @@ def _mix(plan: CrowdPlan) -> Mix:
         weights=np.ones((len(plan.motion), 1), np.float32),
         samples=table.samples[plan.motion],
         stance=contacts[:, :2],
-        ahead=contacts[:, 2:],
+        ahead=contacts[:, 2:4],
+        left_strike=contacts[:, 4],
         stride=120.0 * plan.speed / plan.step_frequency / plan.sizes,
     )
 

@@ -10,7 +10,7 @@ from zlib import crc32
 import numpy as np
 
 from experiment_app.crowds import drawn_crowd, measured_crowd
-from experiment_app.render.drawn import Drawn, DrawnWalker
+from experiment_app.render.drawn import Drawn, DrawnCrowd, DrawnWalker
 from experiment_app.scene import Scene, Walker
 from stimuli.actors import Actor, load_actor
 from stimuli.bodies import body_for, load_body, scaled, shipped_names
@@ -86,7 +86,7 @@ def walk_of(actor: str, body: str, making: Making, speed: float) -> MadeWalk:
     return made_walk(cast(actor, body)[0], making, speed)
 
 
-def pose_checksum(drawn: Sequence[DrawnWalker]) -> str:
+def pose_checksum(drawn: Sequence[Drawn]) -> str:
     """8 hexadecimal digits that tell whether the same poses were drawn at the same places; "" without walkers.
 
     CRC-32 of matrices and places in whole units of 1e-4 (0.1 mm for places), so that two computers whose
@@ -95,8 +95,8 @@ def pose_checksum(drawn: Sequence[DrawnWalker]) -> str:
     if not drawn:
         return ""
     checksum = 0
-    for walker in drawn:
-        values = np.append(walker.matrices.ravel(), walker.place)
+    for each in drawn:
+        values = each.rows if isinstance(each, DrawnCrowd) else np.append(each.matrices.ravel(), each.place)
         checksum = crc32(np.rint(values * 1e4).astype("<i4").tobytes(), checksum)
     return f"{checksum:08x}"
 

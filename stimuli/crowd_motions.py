@@ -16,7 +16,7 @@ import numpy as np
 
 from stimuli.blend import WalkCycle
 from stimuli.bodies import load_body
-from stimuli.gait_model import GRAVITY, GaitModel, Step, load_gait_model
+from stimuli.gait_model import GRAVITY, GaitModel, Step, WalkCurves, load_gait_model
 from stimuli.retarget import Figure, walk_cycle
 from stimuli.skeleton import Floats
 
@@ -86,7 +86,8 @@ def motion_of(style: Style) -> Motion:
     step = Step.of(speed, frequency, figure.leg_length)
     sex = 0.5 if style.sex == "F" else -0.5
     coefficients = model.coefficients(step, sex, manner)
-    cycle = walk_cycle(figure, coefficients, model.stance_share(step, sex), speed, frequency)
+    curves = WalkCurves.symmetric(coefficients, model.stance_share(step, sex))
+    cycle = walk_cycle(figure, curves, speed, frequency)
     return Motion(style, length, cycle)
 
 
