@@ -19,6 +19,7 @@ from analysis.columns import numeric_label
 from analysis.errors import AnalysisError
 from analysis.gait_measures import GRAVITY
 from analysis.plan import AnalysisPlan, plan_of
+from protocols.setting import references, value_of
 from protocols.study import Simulation
 
 MEASURES = ("walk_ratio", "step_frequency", "step_length", "normalised_walk_ratio")
@@ -130,14 +131,13 @@ def _measure(model: ExperimentModel, frequency: np.ndarray) -> np.ndarray:
 
 
 def _values(setting: Any, columns: Mapping[str, list[Any]], count: int) -> list[Any]:
-    """The value of a stimulus setting in every condition: `$factor`, or a constant."""
-    if isinstance(setting, str) and setting.startswith("$"):
-        if setting[1:] not in columns:
-            raise AnalysisError(f"The study file refers to {setting!r}, which is no factor.")
-        return columns[setting[1:]]
+    """The value of a stimulus setting in every condition: `$factor`, a table by a factor's levels, or a constant."""
     if setting is None:
         raise AnalysisError("The study file does not say which actor, speed or start value is shown.")
-    return [setting] * count
+    unknown = [name for name in references(setting) if name not in columns]
+    if unknown:
+        raise AnalysisError(f"The study file refers to {f'${unknown[0]}'!r}, which is no factor.")
+    return [value_of(setting, {name: column[i] for name, column in columns.items()}) for i in range(count)]
 
 
 def _design(plan: AnalysisPlan, n: int) -> CellMeans:

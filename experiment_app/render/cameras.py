@@ -29,8 +29,11 @@ AIM = 0.9  # m above the ground at the place an elevated camera looks at: the mi
 NARROWEST = 0.8
 """Width over height that still shows a walker with the arms' swing in every named view."""
 
-CROWN_AT = 0.88
+CROWN_AT = 0.93
 """Of half the field of view: as high as the crown may stand for a machine's sake."""
+
+ON_MACHINES = 1.86
+"""m, stature that a camera makes room for on a treadmill, so that the machine does not move from actor to actor."""
 
 NOTHING = np.zeros((0, 3))
 
@@ -82,8 +85,8 @@ def place_camera(
     distance, height or aspect ratio. In pictures narrower than NARROWEST (upright displays, halves of old screens)
     the field of view is widened so that the horizontal one is what it would be there; otherwise it is exactly
     what the scene asks for. Only the legs view is narrower where that would show more than legs: it ends LEGS_TOP
-    above and LEGS_MARGIN below. With a machine the camera looks down to hold it too; where the field of view is
-    too narrow for both, the walker is whole and the machine is cut. An elevated camera has its place in the
+    above and LEGS_MARGIN below. With a machine the camera looks down to hold it too, in the same direction for
+    everybody up to ON_MACHINES; where the field of view is too narrow for both, the machine is cut. An elevated camera has its place in the
     middle of the picture, AIM above the ground; first person looks straight ahead.
     """
     heading = HEADINGS[camera.view] if camera.heading is None else camera.heading
@@ -92,6 +95,8 @@ def place_camera(
     half_angle = math.radians(0.5 * camera.field_of_view)
     if camera.follows:
         base, distance = np.array(walker), camera.distance
+        if len(machine) and camera.view != "legs":
+            stature = max(stature, ON_MACHINES)
         pitch, half_angle = _framed(camera, stature, half_angle)
         if len(machine) and camera.view != "legs":
             offset = machine - base

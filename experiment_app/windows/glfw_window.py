@@ -44,7 +44,8 @@ def open_window(title: str, full_screen: bool, display: int, size: tuple[int, in
         handle = glfw.create_window(*size, title, None, None)
         if handle and monitor:
             left, top, width, height = glfw.get_monitor_workarea(monitor)
-            glfw.set_window_pos(handle, left + max(width - size[0], 0) // 2, top + max(height - size[1], 0) // 2)
+            wide, high = glfw.get_window_size(handle)  # larger than asked on a display of high density
+            glfw.set_window_pos(handle, left + max(width - wide, 0) // 2, top + max(height - high, 0) // 2)
     if not handle:
         reason = problems[-1] if problems else "no reason given"
         glfw.terminate()
