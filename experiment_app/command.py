@@ -33,7 +33,9 @@ app.command(style_commands)
 app.command(export)
 app.command(withdraw)
 
-StudyArgument = Annotated[str, Parameter(help="A study file (YAML), or the name of a shipped study: walk_ratio, walk_ratio_actors.")]
+StudyArgument = Annotated[
+    str, Parameter(help="A study file (YAML), or the name of a shipped study: walk_ratio, walk_ratio_actors.")
+]
 
 
 def main() -> None:

@@ -86,8 +86,8 @@ def place_camera(
     the field of view is widened so that the horizontal one is what it would be there; otherwise it is exactly
     what the scene asks for. Only the legs view is narrower where that would show more than legs: it ends LEGS_TOP
     above and LEGS_MARGIN below. With a machine the camera looks down to hold it too, in the same direction for
-    everybody up to ON_MACHINES; where the field of view is too narrow for both, the machine is cut. An elevated camera has its place in the
-    middle of the picture, AIM above the ground; first person looks straight ahead.
+    everybody up to ON_MACHINES; where the field of view is too narrow for both, the machine is cut. An elevated
+    camera has its place in the middle of the picture, AIM above the ground; first person looks straight ahead.
     """
     heading = HEADINGS[camera.view] if camera.heading is None else camera.heading
     azimuth = math.radians(heading - 180.0)
