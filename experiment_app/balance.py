@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from protocols.assignment import counts, group_of
-from protocols.design import Trial, default_seed, make_trials, square_parts, square_row, square_rows
+from protocols.design import default_seed, make_trials, square_parts, square_row, square_rows
 from protocols.order import AdaptiveOrder, ListOrder
 from protocols.plan import QuestionsStep, TrialStep, make_plan
 from protocols.study import Level, Study
@@ -121,7 +121,7 @@ def what_participant_sees(study: Study, number: int, seed: int | None = None) ->
             if step.trial.block != block and not step.trial.practice and len(blocks) > 1:
                 block = step.trial.block
                 lines.append(f"  block {block}")
-            lines.append(f"    {_trial(step.trial)}")
+            lines.append(f"    {_trial(step)}")
         elif isinstance(step, QuestionsStep):
             lines.append(f"  questions: {', '.join(question.id for question in step.questions)}")
         else:
@@ -129,7 +129,9 @@ def what_participant_sees(study: Study, number: int, seed: int | None = None) ->
     return lines
 
 
-def _trial(trial: Trial) -> str:
+def _trial(step: TrialStep) -> str:
+    trial = step.trial
     what = "training" if trial.practice else f"trial {trial.number:>3}"
     track = f"  (track {trial.track})" if trial.track else ""
-    return f"{what}: {_named(dict(trial.levels))}{track}"
+    order = f"  ({' | '.join(step.order)})" if len(step.order) > 1 else ""
+    return f"{what}: {_named(dict(trial.levels))}{order}{track}"

@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from random import Random
+from statistics import NormalDist
 from typing import Any
 
 from protocols.adjustment import AdjustmentTrial
@@ -99,8 +100,10 @@ def rate(observer: Observer, trial: RatingTrial, levels: Mapping[str, Level], rn
     """Moves the mark to what its population thinks of this condition, more or less, and confirms."""
     rater, scale = observer.simulation.rating, trial.task.scale
     middle = (scale.minimum + scale.maximum) / 2.0
-    wanted = float(_known(rater.rating, levels, middle)) + rater.spread * observer.leaning + rng.gauss(0.0, rater.noise)
-    wanted = min(max(wanted, scale.minimum), scale.maximum)
+    mean = middle if rater.rating is None else float(_known(rater.rating, levels, middle))
+    felt = latent_mean(mean, math.hypot(rater.spread, rater.noise), scale.minimum, scale.maximum)
+    felt += rater.spread * observer.leaning + rng.gauss(0.0, rater.noise)
+    wanted = min(max(felt, scale.minimum), scale.maximum)
     pace = math.exp(rater.pace_spread * observer.pace + rater.time_spread * rng.gauss(0.0, 1.0))
     time = trial.onset + _unseen(trial.viewing) + max(rater.response_time * pace, QUICKEST)
     events: list[Event] = []
@@ -123,6 +126,29 @@ BEHAVIOURS: Mapping[str, Callable[[Observer, Any, Mapping[str, Level], Random], 
     "rating": rate,
 }
 """Kind of task to what an observer does in one of its trials; the trial is of that task."""
+
+
+def latent_mean(mean: float, sd: float, low: float, high: float) -> float:
+    """Mean of a normal variable whose values, kept between low and high, have the mean `mean`; by bisection.
+
+    E[min(max(X, low), high)] = low Phi(a) + high (1 - Phi(b)) + m (Phi(b) - Phi(a)) + sd (phi(a) - phi(b)), with
+    a = (low - m) / sd and b = (high - m) / sd: the two-limit Tobit mean (Greene, Econometric Analysis, ch. 19).
+    """
+    if sd == 0.0 or not low < mean < high:
+        return mean
+    reach = high - low + 10.0 * sd
+    below, above = low - reach, high + reach
+    for _ in range(60):
+        middle = (below + above) / 2.0
+        below, above = (middle, above) if _kept_mean(middle, sd, low, high) < mean else (below, middle)
+    return (below + above) / 2.0
+
+
+def _kept_mean(mean: float, sd: float, low: float, high: float) -> float:
+    normal = NormalDist()
+    a, b = (low - mean) / sd, (high - mean) / sd
+    inside = normal.cdf(b) - normal.cdf(a)
+    return low * normal.cdf(a) + high * (1.0 - normal.cdf(b)) + mean * inside + sd * (normal.pdf(a) - normal.pdf(b))
 
 
 def _tapped(time: float, key: str) -> tuple[Event, Event]:

@@ -235,11 +235,13 @@ def _strip(study: Study) -> list[str]:
     trials = make_trials(study, seed=1)
     bins = min(48, len(trials))
     lines = []
+    name = max(10, *map(len, study.factors))
+    wide = max(8, *(len(str(level)) for levels in study.factors.values() for level in levels))
     for factor, levels in study.factors.items():
         for level in levels:
             at = Counter((t.number - 1) * bins // len(trials) for t in trials if t.levels[factor] == level)
             marks = "".join(" .:*#"[min(at[b], 4)] for b in range(bins))
-            lines.append(f"  {factor:>10} {level!s:<8}|{marks}| {sum(at.values())} trials")
+            lines.append(f"  {factor:>{name}} {level!s:<{wide}}|{marks}| {sum(at.values())} trials")
     return lines
 
 

@@ -160,7 +160,7 @@ class Page:
     """A page of text, centred in a calm column: lines, then rows of boxes, then a hint at the bottom.
 
     over_scene: drawn over the (dimmed) walker instead of on a plain background, as a pause is.
-    at_bottom:  over the scene, at its lower edge, without dimming it: the walk is still to be looked at.
+    strip:      share of the picture's height at the lower edge that the page keeps to; 0: all of the picture.
     """
 
     lines: tuple[Line, ...] = ()
@@ -168,7 +168,7 @@ class Page:
     hint: str = ""
     progress: float | None = None
     over_scene: bool = False
-    at_bottom: bool = False
+    strip: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -179,6 +179,8 @@ class Scene:
                   view, which is the same when the perspective is true.
     lod:          level of detail that all walkers are forced to, 0 the finest; None chooses by size on the screen.
     crowd:        more people, of whom each has a motion, a place and a look of its own.
+    strip:        share of the picture's height at its lower edge that is kept free for the page; what is above is cut
+                  from the same picture, so that nothing gets smaller.
     beside:       a second scene for the right half of the picture, this one then has the left half: each with its own
                   walkers, camera, ground, marks and lod. Page, caption and screen_angle are those of this scene and
                   for the whole picture.
@@ -192,6 +194,7 @@ class Scene:
     marks: Marks = field(default_factory=Marks)
     screen_angle: float = 0.0
     lod: int | None = None
+    strip: float = 0.0
     beside: Scene | None = None
     crowd: Crowd | None = None
 

@@ -17,6 +17,9 @@ from protocols.task import Scale, Seen, View
 from protocols.viewing import field_of_view
 from stimuli.methods.recipe import Making
 
+QUESTION_STRIP, SCALE_STRIP = 0.1, 0.2
+"""Share of the picture's height, at its lower edge, that a question has for itself."""
+
 OWN_WAY = OwnMaking()
 """How a walk is made when the study file says nothing: as the actor was captured."""
 
@@ -56,14 +59,15 @@ def staged(study: Study, walkers: tuple[Walker, ...]) -> Scene:
 
 
 def view_scene(study: Study, view: View) -> Scene:
-    """What a trial shows: one walk, or two beside each other, and below them what is asked."""
+    """What a trial shows: one walk, or two beside each other, and in a strip below them what is asked."""
     scenes = [staged(study, (_walker(seen),)) for seen in view.walks]
-    if not scenes:
-        return Scene(page=_question_page(study, view))
-    scene = scenes[0] if len(scenes) == 1 else replace(scenes[0], beside=scenes[1])
-    if view.scale is not None:
-        return replace(scene, page=_question_page(study, view))
-    return replace(scene, caption=view.question or study.words.trial_caption)
+    scene = Scene()
+    if scenes:
+        scene = scenes[0] if len(scenes) == 1 else replace(scenes[0], beside=scenes[1])
+    if not view.question:
+        return replace(scene, caption=study.words.trial_caption)
+    page = _question_page(study, view)
+    return replace(scene, page=replace(page, over_scene=bool(scenes)), strip=page.strip)
 
 
 def _walker(seen: Seen) -> Walker:
@@ -89,12 +93,11 @@ def making_of(walk: Walk) -> Making | None:
 
 
 def _question_page(study: Study, view: View) -> Page:
-    """The question without walks to see, or under them with the scale that answers it."""
+    """The question, with the scale that answers it unless keys do."""
     if view.scale is None:
-        return Page((Line(view.question),) if view.question else ())
+        return Page((Line(view.question),), strip=QUESTION_STRIP)
     button = Box(CONFIRM, study.words.next, "button")
-    row = Row(view.question, (button,), slider=_slider(view.scale))
-    return Page((), (row,), hint=study.words.rating_hint, over_scene=bool(view.walks), at_bottom=bool(view.walks))
+    return Page((), (Row(view.question, (button,), slider=_slider(view.scale)),), strip=SCALE_STRIP)
 
 
 def _slider(scale: Scale) -> Slider:

@@ -68,8 +68,8 @@ class ChoiceTrial:
 
     @property
     def view(self) -> View:
-        """The walks that are seen now, and the question once every walk has appeared."""
-        return View(self.viewing.seen, self.question if self.viewing.every_one_seen else "")
+        """The walks that are seen now, and the question."""
+        return View(self.viewing.seen, self.question)
 
     @property
     def response(self) -> Mapping[str, Level]:

@@ -74,9 +74,7 @@ class RatingTrial:
 
     @property
     def view(self) -> View:
-        """The walks that are seen now; the question and the scale once every walk has appeared."""
-        if not self.viewing.every_one_seen:
-            return View(self.viewing.seen)
+        """The walks that are seen now, the question and the scale."""
         return View(self.viewing.seen, self.question, replace(self.task.scale, mark=self.mark))
 
     @property

@@ -14,7 +14,9 @@ class ChoosingObservers(SettingsPart):
     """How simulated observers choose; settings may be constants, `$factor` or tables by a factor."""
 
     confusion: ProbabilitySetting = Field(
-        0.5, description="Probability of choosing another than the original (without one: than the first named)."
+        0.5,
+        description="Probability that a middling observer chooses another than the original (without one: than the "
+        "alternative named first).",
     )
     response_time: SecondsSetting = Field(3.0, description="Median, s, once every alternative can be seen.")
     spread: float = Field(0.3, strict=True, ge=0.0, le=5.0, description="S.d. between participants, logit.")
@@ -30,7 +32,7 @@ class ChoosingObservers(SettingsPart):
 class RatingObservers(SettingsPart):
     """How simulated observers rate; `rating` may be a constant, `$factor` or a table by a factor."""
 
-    rating: NumberSetting = Field(0.0, description="Mean, of the scale.")
+    rating: NumberSetting | None = Field(None, description="Mean of all ratings; the scale's middle if left out.")
     spread: float = Field(0.4, strict=True, ge=0.0, allow_inf_nan=False, description="S.d. between participants.")
     noise: float = Field(0.8, strict=True, ge=0.0, allow_inf_nan=False, description="S.d. from trial to trial.")
     response_time: Seconds = Field(5.0, description="Median until the first key, s.")

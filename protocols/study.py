@@ -140,7 +140,6 @@ class Words(Part):
     welcome_back: Text = "Welcome back"
     welcome_back_text: Text = "You will go on where you left off: trial {next} of {total}."
     finished_hint: Text = "Press Enter to close"
-    rating_hint: Text = "Choose with the arrow keys or the pointer, then press Enter"
     trial_caption: str = Field("", description="A line under the walker during trials.")
     keys: dict[Key, Text] = Field(default_factory=dict, description="What keys are called on pages, as enter: Entrée.")
 

@@ -70,7 +70,7 @@ class Block:
 @lru_cache(maxsize=64)
 def layout_page(page: Page, width: int, height: int, pixel_ratio: float) -> PageLayout:
     """A page in a window of width x height device pixels; pixel_ratio is device pixels per ordinary pixel."""
-    measure = WIDE_MEASURE if page.at_bottom else CARD_MEASURE if page.over_scene else MEASURE
+    measure = WIDE_MEASURE if page.strip else CARD_MEASURE if page.over_scene else MEASURE
     settings = _settings(width, height, pixel_ratio, measure)
     return _first_complete(lambda setting: _layout(page, width, height, setting), settings)
 
@@ -121,6 +121,8 @@ def _shrinking(first: float, last: float) -> list[float]:
 
 def _layout(page: Page, width: int, height: int, setting: Setting) -> PageLayout:
     content = _stack(_content(page, setting))
+    if page.strip:
+        return _in_strip(page, content, width, height, setting)
     hint = _text(clean(page.hint), "hint", setting) if page.hint.strip() else Block()
     gap = setting.space(1.6) if hint.height and content.height else 0
     left = (width - setting.column) // 2
@@ -130,12 +132,9 @@ def _layout(page: Page, width: int, height: int, setting: Setting) -> PageLayout
     if page.over_scene:
         padding = setting.space(1.8)
         top = max((height - needed) // 2, 0)
-        if page.at_bottom:
-            padding = setting.space(0.9)
-            top = max(height - round(0.03 * height) - padding - needed, 0)
         hint_top = top + content.height + gap
         card = Rectangle(left, top, setting.column, needed).grown(padding) if needed else None
-        complete = needed + 2 * padding <= (0.4 * height if page.at_bottom else height)
+        complete = needed + 2 * padding <= height
     else:
         hint_top = height - margin - hint.height
         top = round(TITLE_TOP * height)
@@ -145,6 +144,21 @@ def _layout(page: Page, width: int, height: int, setting: Setting) -> PageLayout
     return PageLayout(
         width, height, setting.text / 10, whole.texts, whole.boxes, whole.sliders, whole.rings, whole.signs,
         whole.track, whole.done, card, complete,
+    )  # fmt: skip
+
+
+def _in_strip(page: Page, content: Block, width: int, height: int, setting: Setting) -> PageLayout:
+    """Content in the middle of the page's strip; a question alone is centred."""
+    if not page.rows:
+        texts = tuple(replace(t, rectangle=replace(t.rectangle, x=(setting.column - t.rectangle.width) // 2))
+                      for t in content.texts)  # fmt: skip
+        content = replace(content, texts=texts)
+    strip = round(page.strip * height)
+    top = height - strip + (strip - content.height) // 2
+    placed = _moved(content, (width - setting.column) // 2, top)
+    return PageLayout(
+        width, height, setting.text / 10, placed.texts, placed.boxes, placed.sliders, placed.rings, placed.signs,
+        complete=content.height <= 0.86 * strip,
     )  # fmt: skip
 
 

@@ -65,7 +65,7 @@ class PagePainter:
             self._context.clear(*PAGE)
         if page is not None and page != Page():
             layout = layout_page(page, width, height, self._pixel_ratio)
-            back = PAGE if plain else CLEAR if page.at_bottom else DIM
+            back = PAGE if plain else CLEAR if page.strip else DIM
             card = () if layout.card is None else (Shape(layout.card, CARD, 9 * layout.unit),)
             whole = Rectangle(0, 0, width, height)
             self._page.compose(layout, whole, back, (*card, *shapes_of(layout)))

@@ -73,8 +73,8 @@ class Renderer:
         """
         target.use()
         target.viewport = (0, 0, *self._picture.size)
-        if scene.beside is not None and scene.visible:
-            target.clear(*PAGE)  # the strip between the halves, and a half with nobody in it
+        if (scene.beside is not None or scene.strip) and scene.visible:
+            target.clear(*PAGE)  # the strips between the halves and under them, and a half with nobody in it
         viewports = viewports_of(scene, drawn, self._picture.size)
         self._viewports = tuple(view for view in viewports if view.scene.visible)
         self._levels = ()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -25,19 +26,39 @@ class Viewport:
 
 
 def viewports_of(scene: Scene, drawn: Sequence[Drawn], size: tuple[int, int]) -> tuple[Viewport, ...]:
-    """The views of a picture of `size`: one that fills it, or two with as many pixels each.
+    """The views of a picture of `size`: one, or two with as many pixels each, above the strip kept for the page.
 
     drawn: the scene's walkers and its crowd, then those of the scene beside it. What is seen under the viewer's
     angle is the whole picture, so both halves have the outer scene's.
     """
     width, height = size
+    floor = round(scene.strip * height)
+    above = 1.0 - floor / height
+    alone = cut(replace(scene, beside=None, strip=0.0), above)
     if scene.beside is None:
-        return (Viewport(scene, drawn, (0, 0, width, height)),)
-    left, right, _ = divide(size)
-    beside = replace(scene.beside, screen_angle=scene.screen_angle)
+        return (Viewport(alone, drawn, (0, floor, width, height - floor)),)
+    left, right, _ = divide((width, height - floor))
+    beside = cut(replace(scene.beside, screen_angle=scene.screen_angle), above)
     first = len(scene.walkers) + (scene.crowd is not None)
-    alone = replace(scene, beside=None)
-    return Viewport(alone, drawn[:first], left), Viewport(beside, drawn[first:], right)
+    return Viewport(alone, drawn[:first], _raised(left, floor)), Viewport(beside, drawn[first:], _raised(right, floor))
+
+
+def cut(scene: Scene, share: float) -> Scene:
+    """The scene as the middle `share` of its picture's height shows it: narrower angles, everything as large."""
+    if share == 1.0:
+        return scene
+    camera = replace(scene.camera, field_of_view=_narrowed(scene.camera.field_of_view, share))
+    return replace(scene, camera=camera, screen_angle=_narrowed(scene.screen_angle, share))
+
+
+def _narrowed(angle: float, share: float) -> float:
+    """Degrees that a share of the height of a picture fills whose whole height fills `angle`."""
+    return 2.0 * math.degrees(math.atan(share * math.tan(math.radians(angle / 2.0))))
+
+
+def _raised(area: Area, by: int) -> Area:
+    x, y, width, height = area
+    return x, y + by, width, height
 
 
 def divide(size: tuple[int, int]) -> tuple[Area, Area, Area]:
