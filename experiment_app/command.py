@@ -98,6 +98,21 @@ def run_study(
     refresh: Annotated[
         float, Parameter(help="Refresh rate in Hz, where the display reports none or a wrong one.")
     ] = 0.0,
+    keyboard: Annotated[
+        Literal["auto", "x-server", "psychtoolbox", "arrival"],
+        Parameter(help="Where the times of keys come from; auto takes the best there is."),
+    ] = "auto",
+    devices: Annotated[
+        list[Literal["mouse", "gamepad"]] | None,
+        Parameter(name="--also", negative="", consume_multiple=True, help="What else answers, beside the keyboard."),
+    ] = None,
+    photodiode: Annotated[
+        Literal["top-left", "top-right", "bottom-left", "bottom-right"] | None,
+        Parameter(help="Corner for a square that is white while a walker is shown, for a photodiode."),
+    ] = None,
+    trigger: Annotated[
+        str, Parameter(help="Line for trigger pulses, as serial:/dev/ttyUSB0 or parallel:/dev/parport0.")
+    ] = "",
     seed: Annotated[
         int | None, Parameter(help="Seed of the trial order; by default made from study, ID and run.")
     ] = None,
@@ -110,11 +125,15 @@ def run_study(
 
     An unfinished run is offered to be continued at the first unfinished trial, with the same order.
     """
-    from experiment_app.live import run_live
+    from experiment_app.live import ScreenOptions, run_live
 
+    screen = ScreenOptions(
+        full_screen=not window, size=_size(size), display=display, refresh=refresh, keyboard=keyboard,
+        devices=tuple(devices or ()), photodiode=photodiode,
+    )  # fmt: skip
     return run_live(
-        study, participant, data or Path("pilot" if pilot else "data"), full_screen=not window, size=_size(size),
-        display=display, refresh=refresh, seed=seed, new_run=new_run, pilot=pilot, resume=resume, ask=_ask, say=_say,
+        study, participant, data or Path("pilot" if pilot else "data"), screen=screen, trigger=trigger, seed=seed,
+        new_run=new_run, pilot=pilot, resume=resume, ask=_ask, say=_say,
     )  # fmt: skip
 
 
@@ -303,12 +322,32 @@ def demo(
 def doctor(
     *,
     off_screen: Annotated[bool, Parameter(negative="", help="Draw off-screen even where there is a display.")] = False,
+    display: Annotated[int, Parameter(help="Number of the display, from 1.")] = 1,
+    keys: Annotated[bool, Parameter(help="Measure how injected keys are stamped (X11).")] = True,
 ) -> int:
-    """What this computer's OpenGL and display give: renderer, samples, refresh rate, measured frame intervals."""
+    """What this computer's graphics, display and keyboard give, measured: whether timing can be published, and why."""
     from experiment_app.doctor import examine, lines
 
-    for line in lines(examine(off_screen)):
+    for line in lines(examine(off_screen, display=display, keys=keys)):
         out.print(line, markup=False)
+    return 0
+
+
+@app.command
+def certificate(
+    run_folder: Annotated[Path, Parameter(help="A run, as data/walk_ratio/sourcedata/sub-P01/run-1.")],
+    *,
+    path: Annotated[Path | None, Parameter(name="--out", help="Write it to a file (Markdown) instead.")] = None,
+) -> int:
+    """The timing certificate of a run: frames, late frames, key times, a verdict, a paragraph for the paper."""
+    from experiment_app.timing_page import certificate_of
+
+    text = certificate_of(run_folder)
+    if path is None:
+        out.print(text, markup=False, end="")
+    else:
+        path.write_text(text, encoding="utf-8")
+        out.print(f"  {path}", markup=False)
     return 0
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from experiment_app.errors import UsageError
 from experiment_app.film import save_film, save_picture, save_strip
-from experiment_app.live import run_live
+from experiment_app.live import ScreenOptions, run_live
 from experiment_app.loop import run_session
 from experiment_app.observer import SimulatedParticipant, draw_observer
 from experiment_app.opening import open_new
@@ -129,8 +129,7 @@ def _take_part(folder: Path, say: Callable[[str], None]) -> bool:
     file.write_text(short_study().text, encoding="utf-8")
     try:
         run_live(
-            str(file), "YOU", folder / "your-data", full_screen=False, size=(1280, 720), display=1, refresh=0.0,
-            seed=None,
+            str(file), "YOU", folder / "your-data", screen=ScreenOptions(full_screen=False), seed=None,
             new_run=False, resume="no", ask=lambda _: False, say=say,
         )  # fmt: skip
     except RunError as error:

@@ -1,7 +1,8 @@
 """Keys pressed by a program at known times, through the X server's test extension, to measure how keys are stamped.
 
-`python -m experiment_app.injected_keys COUNT` waits for a line on standard input, presses F12 COUNT times at random
-moments and prints the times as JSON. A process of its own, so that what is measured cannot delay it.
+`python -m experiment_app.injected_keys COUNT` waits for a line on standard input, presses a key that no study uses
+COUNT times at random moments and prints the times as JSON. A process of its own, so that what is measured cannot
+delay it.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import ctypes
 import ctypes.util
 import json
+import os
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -25,7 +27,7 @@ from protocols.session import Session
 if TYPE_CHECKING:
     from experiment_app.windows.desktop import DesktopWindow
 
-KEY, KEYSYM = "key-301", 0xFFC9  # F12, which no study uses
+KEY, KEYSYM = "key-345", 0xFFE4  # the right Control key, which no study uses
 SPACING = (0.08, 0.14)
 """s from one press to the next, uniform."""
 
@@ -67,6 +69,11 @@ class KeyErrors:
 def percentile_90(values: Sequence[float]) -> float:
     """The value below which nine tenths lie, interpolated."""
     return quantiles(values, n=10, method="inclusive")[-1] if len(values) > 1 else values[0]
+
+
+def can_inject() -> bool:
+    """Whether this computer has an X server and the library of its test extension."""
+    return bool(os.environ.get("DISPLAY") and ctypes.util.find_library("Xtst"))
 
 
 def inject(count: int) -> list[tuple[float, float]]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
@@ -16,8 +18,12 @@ from experiment_app.loop import run_session
 from experiment_app.opening import OpenRun, kind_of, open_new, open_unfinished, refuse_mixed, unfinished_run
 from experiment_app.run_folder import Run, check_participant, first_headers
 from experiment_app.staging import making_of
+from experiment_app.timing_page import write_certificate
+from experiment_app.triggers import triggering
 from experiment_app.walkers import cast, own_step_frequency
-from experiment_app.windows.desktop import DesktopWindow
+from experiment_app.windows.desktop import DesktopWindow, Device
+from experiment_app.windows.key_times import Keyboard
+from experiment_app.windows.patch import Corner, Patch
 from protocols import resuming
 from protocols.plan import Plan, TrialStep, walks_of
 from protocols.session import begin
@@ -26,15 +32,40 @@ from protocols.study_file import StudyFile, parse_study
 SIGNALS = ("SIGTERM", "SIGINT", "SIGHUP", "SIGBREAK")
 
 
+@dataclass(frozen=True)
+class ScreenOptions:
+    """Where and how a study is shown, and what gives keys; the arguments of `DesktopWindow`."""
+
+    full_screen: bool = True
+    size: tuple[int, int] = (1280, 720)
+    display: int = 1
+    refresh: float = 0.0
+    keyboard: Keyboard = "auto"
+    devices: tuple[Device, ...] = ()
+    photodiode: Corner | None = None
+
+
+def open_window(title: str, screen: ScreenOptions) -> DesktopWindow:
+    """The window the options ask for."""
+    return DesktopWindow(
+        title=title,
+        full_screen=screen.full_screen,
+        size=screen.size,
+        display=screen.display,
+        refresh=screen.refresh,
+        keyboard=screen.keyboard,
+        devices=screen.devices,
+        patch=Patch(screen.photodiode) if screen.photodiode else None,
+    )
+
+
 def run_live(
     study: str,
     participant: str,
     data: Path,
     *,
-    full_screen: bool,
-    size: tuple[int, int],
-    display: int,
-    refresh: float,
+    screen: ScreenOptions,
+    trigger: str = "",
     seed: int | None,
     new_run: bool,
     pilot: bool = False,
@@ -54,9 +85,7 @@ def run_live(
         raise UsageError(f"--seed: participant {participant} has an unfinished run, which keeps its own order.")
     if old is not None and not _continues(old, file, resume, ask, say):
         return 2
-    with DesktopWindow(
-        title=file.study.title, full_screen=full_screen, size=size, display=display, refresh=refresh
-    ) as window:
+    with open_window(file.study.title, screen) as window:
         if old is not None:
             opened = open_unfinished(old, display=window.description())
             if opened.torn:
@@ -73,11 +102,26 @@ def run_live(
                 again=new_run,
             )
         sitting = crash_note(opened.run.folder, opened.run.sittings + 1)
-        with sitting, opened.journal as journal, ending_signals(window.request_end):
+        with (
+            sitting,
+            opened.journal as journal,
+            triggering(journal, trigger, window.now) as recorder,
+            ending_signals(window.request_end),
+        ):
             prepare(opened.plan)
-            session = run_session(begin(opened.plan), window, journal)
+            with without_collection():
+                session = run_session(begin(opened.plan), window, recorder)
+    _certify(opened.run, say)
     command = f"gaitlab run {study} --participant {participant} --data {data}{' --pilot' if pilot else ''}"
     return _farewell(opened, command, session.ended, say)
+
+
+def _certify(run: Run, say: Callable[[str], None]) -> None:
+    """Writes the timing certificate; where it cannot be, that is said, as it can be made from the journal any time."""
+    try:
+        say(f"Timing: {write_certificate(run)}")
+    except OSError as error:
+        say(f"The timing certificate was not written ({error.strerror}); gaitlab certificate {run.folder} makes it.")
 
 
 def _continues(old: Run, file: StudyFile, resume: str, ask: Callable[[str], bool], say: Callable[[str], None]) -> bool:
@@ -124,6 +168,21 @@ def prepare(plan: Plan) -> None:
     for walk in {walk for step in steps for walk in walks_of(plan.study, step).values()}:
         cast(walk.actor, walk.body)
         own_step_frequency(walk.actor, walk.body, making_of(walk), walk.speed)
+
+
+@contextmanager
+def without_collection() -> Iterator[None]:
+    """Keeps Python's garbage collector out of trials; the loop collects between them."""
+    was_on = gc.isenabled()
+    gc.collect()
+    gc.freeze()
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.unfreeze()
+        if was_on:
+            gc.enable()
 
 
 @contextmanager

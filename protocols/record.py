@@ -201,6 +201,17 @@ class FrameLog:
 
 
 @dataclass(frozen=True)
+class TriggerSent:
+    """A code was sent on the trigger line; time: right after sending (s). of: kind of the record it announces."""
+
+    kind = "trigger"
+    time: float
+    code: int
+    of: str
+    line: str
+
+
+@dataclass(frozen=True)
 class Continued:
     """An unfinished run was opened again; torn_bytes of an incomplete last line were set aside.
 
@@ -235,7 +246,7 @@ class Withdrawn:
 
 Record = (
     Header | Consented | Answered | PageShown | Key | Click | TrialBegun | TrialRecord
-    | Paused | Resumed | FrameLog | Continued | Ended | Withdrawn
+    | Paused | Resumed | FrameLog | TriggerSent | Continued | Ended | Withdrawn
 )  # fmt: skip
 
 

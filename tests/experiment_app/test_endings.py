@@ -213,15 +213,15 @@ def interrupted_once(data: Path, policy: str):
 def test_a_run_that_its_study_does_not_let_go_on_is_refused_before_a_window_opens(
     tmp_path, monkeypatch, policy, reason
 ):
-    from experiment_app.live import run_live
+    from experiment_app.live import ScreenOptions, run_live
 
     monkeypatch.setattr(opening, "_utc_now", lambda: "2020-01-01T00:00:00Z")
     file = interrupted_once(tmp_path / "data", policy)
     (tmp_path / "s.yaml").write_text(file.text, encoding="utf-8")
     with pytest.raises(UsageError, match=reason) as refused:
         run_live(
-            str(tmp_path / "s.yaml"), "P01", tmp_path / "data", full_screen=False, size=(320, 200), display=1,
-            refresh=0.0, seed=None, new_run=False, resume="yes", ask=lambda _: True, say=lambda _: None,
+            str(tmp_path / "s.yaml"), "P01", tmp_path / "data", screen=ScreenOptions(full_screen=False), seed=None,
+            new_run=False, resume="yes", ask=lambda _: True, say=lambda _: None,
         )  # fmt: skip
     assert "--new-run" in str(refused.value)
 

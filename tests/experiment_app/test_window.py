@@ -172,6 +172,11 @@ def test_a_whole_session_with_a_pause_is_in_the_journal(sit):
         assert trial["measured"]["speed"] == pytest.approx(trial["factors"]["speed"], rel=0.005)
     frames = [line for line in lines if line["kind"] == "frames"]
     assert len(frames[0]["flips"]) == len(frames[0]["poses"]) == training["frames"]
+    assert all(line["source"] == "x-server" and line["uncertainty_ms"] <= 1.0 for line in keys)
+    assert lines[0]["display"]["swap_waits_for_display"] is False
+    certificate = (person.folder / "data" / "walk_ratio" / "sourcedata" / "sub-P01" / "run-1" / "timing.md").read_text()
+    assert "Not synchronised" in certificate
+    assert "Timing: not publishable" in said
     assert (len(frames[0]["stretches"]), len(frames[1]["stretches"])) == (1, 2)  # the second trial was paused
 
 
