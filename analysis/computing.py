@@ -27,6 +27,7 @@ from analysis.results import ALPHA, PlannedResults
 from analysis.shapiro_wilk import normality_of_cells
 from analysis.student import COLUMNS as T_COLUMNS
 from analysis.student import t_tests
+from analysis.trials import used_trials
 
 POSTHOC_COLUMNS = (
     "effect", "a", "b", "estimate", "se", "df", "t", "p", "p_unadjusted", "ci_low", "ci_high", "d_av", "d_z",
@@ -44,7 +45,7 @@ def compute(recorded: RecordedStudy, plan: AnalysisPlan, trials: pd.DataFrame) -
 
 def _compute(recorded: RecordedStudy, plan: AnalysisPlan, trials: pd.DataFrame) -> PlannedResults:
     said = list(recorded.warnings)
-    used = trials[trials["excluded"] == ""] if "excluded" in trials else trials
+    used = used_trials(trials, plan)
     used = _known_groups(used, plan, said)
     cells, descriptives = describe(used, plan)
     means = None

@@ -14,6 +14,8 @@ from analysis.exclusions import matching
 from analysis.plan_parts import FigurePlan
 from analysis.results import ALPHA, PlannedResults
 
+LEGEND = 5.0  # inches that the legend above the panels needs
+
 
 def t_tests_figure(figure: FigurePlan, results: PlannedResults) -> DrawnFigure:
     """Means of the levels with 95 % limits, reference values, and a star where the two do not differ.
@@ -29,7 +31,8 @@ def t_tests_figure(figure: FigurePlan, results: PlannedResults) -> DrawnFigure:
     groups = {"": tuple(rows["level"])}
     if figure.panels is not None:
         groups = dict(plan.groups[figure.panels].levels)
-    drawing, axes = panels(len(groups), 0.42 * max(map(len, groups.values())) + 1.6, 4.2)
+    width = 0.42 * max(map(len, groups.values())) + 1.6
+    drawing, axes = panels(len(groups), max(width, LEGEND / len(groups)), 4.2)
     for place, (axis, (group, levels)) in enumerate(zip(axes, groups.items(), strict=True)):
         shown = rows[rows["level"].isin(levels)]
         _panel(axis, shown, _persons(used, test.each, plan.levels[test.each], plan.measure), COLOURS[place % 6])

@@ -8,6 +8,7 @@ from analysis.cells import CellMeans
 from analysis.drawing import COLOURS, REFERENCE, DrawnFigure, averaged, beeswarm, canvas, finish, saved, settings
 from analysis.errors import AnalysisError
 from analysis.figure_checks import order_figure, qq_figure
+from analysis.figure_choices import proportions_figure, psychometric_figure
 from analysis.figure_interaction import interaction
 from analysis.figure_raincloud import raincloud
 from analysis.figure_regression import regression_figure
@@ -17,7 +18,9 @@ from analysis.plan import AnalysisPlan
 from analysis.plan_parts import FigurePlan
 from analysis.results import PlannedResults
 
-KINDS = ("means", "interaction", "raincloud", "qq", "order", "t_tests", "regression")
+KINDS = (
+    "means", "interaction", "raincloud", "qq", "order", "t_tests", "regression", "proportions", "psychometric",
+)  # fmt: skip
 
 
 def draw(figure: FigurePlan, results: PlannedResults) -> DrawnFigure:
@@ -32,6 +35,10 @@ def draw(figure: FigurePlan, results: PlannedResults) -> DrawnFigure:
             return t_tests_figure(figure, results)
         if figure.kind == "regression":
             return regression_figure(figure, results)
+        if figure.kind == "proportions":
+            return proportions_figure(results)
+        if figure.kind == "psychometric":
+            return psychometric_figure(results)
         return _of_means(figure, results)
 
 

@@ -1,10 +1,10 @@
-"""Tests a plan can ask for beside ANOVA, pairs and t tests: equivalence, regression, aligned ranks, mixed model."""
+"""Tests a plan can ask for beside the ANOVA, in one list: those of other modules, and four that are made here."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 import pandas as pd
@@ -12,11 +12,14 @@ import pandas as pd
 from analysis import apa
 from analysis.aligned_ranks import aligned, art_anova, art_contrasts
 from analysis.cells import cell_means
+from analysis.choice_tests import d_prime_tests, proportion_tests, psychometric_tests
 from analysis.columns import labels, numeric_label
+from analysis.comparison_tests import comparison_tests, pair_tests
 from analysis.contrasts import subsets
 from analysis.crossed_effects import mixed_model
 from analysis.equivalence_tests import equivalence
 from analysis.errors import AnalysisError
+from analysis.further_test import FurtherTest
 from analysis.linear_regression import regression, regression_diagnostics
 from analysis.plan import AnalysisPlan
 from analysis.plan_parts import EquivalencePlan, MixedModelPlan, RankTransformPlan, RegressionPlan
@@ -26,19 +29,18 @@ from analysis.t_statistics import shapiro
 ALPHA = 0.05
 
 
-@dataclass(frozen=True)
-class FurtherTest:
-    """One such test: its table (with a column `sentence`), a second table where there is one, its checks."""
-
-    kind: str  # equivalence, regression, aligned_rank_transform or mixed_model
-    table: pd.DataFrame
-    more: pd.DataFrame = field(default_factory=pd.DataFrame)  # diagnostics of a regression, contrasts of ranks
-    facts: dict[str, float] = field(default_factory=dict)  # of the fit and its checks
-    notes: tuple[str, ...] = ()
-
-
 def planned_tests(plan: AnalysisPlan) -> Iterator[tuple[str, Callable[[pd.DataFrame], FurtherTest]]]:
     """A name for each further test in the plan, and the function from used trials to its result."""
+    if plan.comparisons:
+        yield "The t tests", lambda used: comparison_tests(used, plan)
+    if plan.pairs:
+        yield "The planned pairs", lambda used: pair_tests(used, plan)
+    if plan.proportions:
+        yield "The tests of proportions", lambda used: proportion_tests(used, plan)
+    if (sensitivity := plan.d_prime) is not None:
+        yield "The sensitivity d′", lambda used: d_prime_tests(used, plan, sensitivity)
+    if (functions := plan.psychometric) is not None:
+        yield "The psychometric functions", lambda used: psychometric_tests(used, plan, functions)
     if plan.equivalence:
         yield "The equivalence tests", lambda used: equivalence_tests(used, plan)
     if (cases := plan.regression) is not None:

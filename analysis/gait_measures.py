@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import pandas as pd
 
 from analysis.cells import names_of
@@ -73,6 +75,25 @@ def gaze_shares(data: pd.DataFrame, subject: str, part: str, duration: str | Non
     totals = seen.pivot_table(index=subject, columns=part, values="time", aggfunc="sum", fill_value=0.0)
     shares = totals.div(totals.sum(axis=1), axis=0) * 100
     return shares.stack().rename("share").reset_index()
+
+
+def gaze_rows(trials: pd.DataFrame, regions: Sequence[str]) -> pd.DataFrame:
+    """A row per trial and region, with the columns region and gaze_share (%), from trials with a column per region.
+
+    The columns are gaze_legs, ... or measured_gaze_legs, ...; trials in which no gaze was recorded are left out.
+    """
+    names = {region: next((c for c in (f"gaze_{region}", f"measured_gaze_{region}") if c in trials), None)
+             for region in regions}  # fmt: skip
+    missing = [region for region, name in names.items() if name is None]
+    if missing:
+        raise AnalysisError(
+            f"No gaze was recorded in these trials: there is no column gaze_{missing[0]}. Record with an eye tracker "
+            "(`gaze:` in the study file), or take gaze_share out of the analysis."
+        )
+    parts = [trials.assign(region=region, gaze_share=numbers(trials, str(name))) for region, name in names.items()]
+    rows = pd.concat(parts)
+    rows["region"] = pd.Categorical(rows["region"], categories=list(regions))
+    return rows[rows["gaze_share"].notna()].sort_index(kind="stable").reset_index(drop=True)
 
 
 def _positive(values, name: str) -> None:  # type: ignore[no-untyped-def]

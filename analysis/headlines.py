@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import pandas as pd
+
 from analysis.apa import anova_sentence, effect_name, number, p_value, regression_sentence, t_sentence
 from analysis.further_tests import FurtherTest
 from analysis.results import ALPHA, PlannedResults, unit_decimals
+
+FEW = 4  # tests of one family that are told one by one
 
 
 def _direction(results: PlannedResults, effect: str) -> list[str]:
@@ -58,8 +62,53 @@ def _of(label: str, sentence: str) -> str:
     return sentence if sentence.startswith(label) else f"{label}: {sentence[:1].lower()}{sentence[1:]}"
 
 
+def _comparison(label: str, what: str, factor: str, each: str, where: str, part: pd.DataFrame) -> list[str]:
+    """One sentence per test of a small family; of a large one, how many differ."""
+    if len(part) <= FEW:
+        return [f"{label}, {what.removesuffix('s')}: {sentence}." for sentence in part["sentence"]]
+    inside = f" inside every {each}" if each else ""
+    trials = f" in trials with {where}" if where else ""
+    low = int((part["p"] < ALPHA).sum())
+    return [f"{label}, {what} of {factor}{inside}{trials}: {low} of {len(part)} differ with p < .05."]
+
+
+def _shares(label: str, part: pd.DataFrame) -> list[str]:
+    """One sentence per share of a few; of many, where they lie above and below chance."""
+    if len(part) <= FEW:
+        heads = [", ".join(filter(None, [label, str(level)])) for level in part["level"]]
+        return [f"{head}: {sentence}." for head, sentence in zip(heads, part["sentence"], strict=True)]
+    low = part["p"] < ALPHA
+    found = {
+        "above chance": part.loc[low & (part["estimate"] > 0), "level"],
+        "below chance": part.loc[low & (part["estimate"] < 0), "level"],
+        "not shown to differ from chance": part.loc[~low, "level"],
+    }
+    told = [f"{what}: {', '.join(levels)}" for what, levels in found.items() if len(levels)]
+    return [f"{label} (t tests over participants), {'; '.join(told)}."]
+
+
+def _of_choices(test: FurtherTest, results: PlannedResults) -> list[str]:
+    """Sentences of the tests of choices and of pairs, with what each is about."""
+    plan, rows = results.plan, test.table.to_dict("records")
+    if test.kind == "comparisons":
+        families = test.table[test.table["test"] != "Welch"].groupby(["factor", "each", "where"], sort=False)
+        return [
+            s for (of, by, where), part in families for s in _comparison(plan.label, "t tests", of, by, where, part)
+        ]
+    if test.kind == "pairs":
+        families = test.table.groupby(["factors", "by"], sort=False)
+        return [s for (of, by), part in families for s in _comparison(plan.label, "planned pairs", of, by, "", part)]
+    if test.kind == "proportions":
+        return [s for label, part in test.table.groupby("label", sort=False) for s in _shares(str(label), part)]
+    name = {"d_prime": "Sensitivity", "psychometric": "Psychometric function"}[test.kind]
+    heads = [", ".join(filter(None, [name, effect_name(str(row["level"]))])) for row in rows]
+    return [f"{head}: {row['sentence']}." for head, row in zip(heads, rows, strict=True)]
+
+
 def _further(test: FurtherTest, results: PlannedResults) -> list[str]:
     plan, table = results.plan, test.table
+    if test.kind in ("comparisons", "pairs", "proportions", "d_prime", "psychometric"):
+        return _of_choices(test, results)
     if test.kind == "equivalence":
         found = []
         for (factor, by), part in table.groupby(["factor", "by"], sort=False):

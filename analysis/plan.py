@@ -10,15 +10,23 @@ from typing import Any
 from analysis.columns import label, level_names, numeric_label
 from analysis.errors import AnalysisError, listed
 from analysis.plan_parts import (
+    ComparisonPlan,
+    DPrimePlan,
     EquivalencePlan,
     Exclusion,
     FigurePlan,
     GroupsPlan,
     MixedModelPlan,
+    PairsPlan,
+    ProportionsPlan,
+    PsychometricPlan,
     RankTransformPlan,
     RegressionPlan,
     TTestPlan,
 )
+from protocols.gaze import REGIONS
+
+GAZE_SHARE = "gaze_share"  # % of looking time; has the within factor region
 
 
 @dataclass(frozen=True)
@@ -52,6 +60,11 @@ class AnalysisPlan:
     regression: RegressionPlan | None = None
     rank_transform: RankTransformPlan | None = None
     mixed_model: MixedModelPlan | None = None
+    comparisons: tuple[ComparisonPlan, ...] = field(default=())
+    pairs: tuple[PairsPlan, ...] = field(default=())
+    proportions: tuple[ProportionsPlan, ...] = field(default=())
+    d_prime: DPrimePlan | None = None
+    psychometric: PsychometricPlan | None = None
     groups: Mapping[str, GroupsPlan] = field(default_factory=dict)  # factors made of groups of another's levels
     also: tuple[AnalysisPlan, ...] = field(default=())  # of further measures
 
@@ -98,6 +111,9 @@ def _one_plan(
     heights = analysis.get("heights")
     groups = {str(name): _groups(part) for name, part in (analysis.get("groups") or {}).items()}
     made = {name: list(part.levels) for name, part in groups.items()}
+    regions = {"region": list(REGIONS)} if analysis["measure"] == GAZE_SHARE else {}
+    levels = {name: level_names(of) for name, of in {**factors, **made, **regions, **between}.items()}
+    tests = [test for test in analysis.get("t_tests") or () if isinstance(test, Mapping)]
     plan = AnalysisPlan(
         study=str(study.get("study", "")),
         title=str(study.get("title", study.get("study", "Study"))),
@@ -107,18 +123,31 @@ def _one_plan(
         unit=str(analysis.get("unit", "")),
         within=tuple(anova.get("within") or ()),
         between=tuple(anova.get("between") or ()),
-        levels={name: level_names(levels) for name, levels in {**factors, **made, **between}.items()},
+        levels=levels,
         adjust=None if post_hoc is None else str(post_hoc.get("adjust", "tukey")),
         model=str((post_hoc or {}).get("model", "multivariate")),
-        t_tests=tuple(
-            TTestPlan(
-                str(test["each"]),
-                _by_level(test["against"]),
-                str(test.get("label", "reference value")),
-                test.get("where"),
+        t_tests=tuple(_against(test, levels) for test in tests if _by_levels(test)),
+        comparisons=tuple(_comparison(test) for test in tests if not _by_levels(test)),
+        pairs=tuple(
+            PairsPlan(
+                _names(p["factors"]),
+                _names(p.get("by")),
+                str(p.get("adjust", "tukey")),
+                str(p.get("model", "multivariate")),
             )
-            for test in analysis.get("t_tests") or ()
+            for p in analysis.get("pairs") or ()
         ),
+        proportions=tuple(
+            ProportionsPlan(
+                str(p["success"]),
+                _names(p.get("each")),
+                float(p.get("chance", 0.5)),
+                str(p.get("label", "Proportion")),
+            )
+            for p in analysis.get("proportions") or ()
+        ),
+        d_prime=_d_prime(analysis.get("d_prime")),
+        psychometric=_psychometric(analysis.get("psychometric")),
         normality=analysis.get("normality", "shapiro_wilk") is not None,
         figures=tuple(
             FigurePlan(str(f["kind"]), f.get("x"), f.get("lines"), f.get("reference"), f.get("panels"))
@@ -157,12 +186,61 @@ def _factors_named(plan: AnalysisPlan) -> Iterator[str | None]:
         yield from (figure.x, figure.lines, figure.panels)
     for same in plan.equivalence:
         yield from (same.factor, same.by)
+    for comparison in plan.comparisons:
+        yield from (comparison.factor, comparison.each)
+    for pairs in plan.pairs:
+        yield from (*pairs.factors, *pairs.by)
+    for proportion in plan.proportions:
+        yield from proportion.each
+    if plan.d_prime is not None:
+        yield from plan.d_prime.each
+    if plan.psychometric is not None:
+        yield from (plan.psychometric.level, *plan.psychometric.each)
     if plan.regression is not None:
         yield plan.regression.of
     if plan.rank_transform is not None:
         yield from (*plan.rank_transform.within, *plan.rank_transform.between)
     if plan.mixed_model is not None:
         yield from (plan.mixed_model.stimulus, *plan.mixed_model.factors)
+
+
+def _names(value: Any) -> tuple[str, ...]:
+    """One name or a list of names."""
+    return () if value is None else (value,) if isinstance(value, str) else tuple(map(str, value))
+
+
+def _by_levels(test: Mapping[str, Any]) -> bool:
+    """Whether a t test is against a value in every level of a factor; the others are comparisons."""
+    return test.get("each") is not None and test.get("against") is not None
+
+
+def _against(test: Mapping[str, Any], levels: Mapping[str, tuple[str, ...]]) -> TTestPlan:
+    each, against = str(test["each"]), test["against"]
+    if not isinstance(against, Mapping):
+        against = dict.fromkeys(levels.get(each, ()), against)
+    return TTestPlan(each, _by_level(against), str(test.get("label", "reference value")), test.get("where"))
+
+
+def _comparison(test: Mapping[str, Any]) -> ComparisonPlan:
+    kind = next((name for name in ("paired", "independent") if test.get(name) is not None), "against")
+    factor = None if kind == "against" else str(test[kind])
+    against = float(test["against"]) if kind == "against" else None
+    label = str(test.get("label", "reference value"))
+    return ComparisonPlan(kind, factor, test.get("each"), against, label, test.get("where"))
+
+
+def _d_prime(part: Mapping[str, Any] | None) -> DPrimePlan | None:
+    return DPrimePlan(str(part["signal"]), str(part["answer"]), _names(part.get("each"))) if part else None
+
+
+def _psychometric(part: Mapping[str, Any] | None) -> PsychometricPlan | None:
+    if not part:
+        return None
+    lapse = part.get("lapse", 0.0)
+    return PsychometricPlan(
+        str(part["level"]), str(part["success"]), _names(part.get("each")), str(part.get("shape", "logistic")),
+        float(part.get("guess", 0.0)), None if lapse == "estimated" else float(lapse), int(part.get("bootstrap", 200)),
+    )  # fmt: skip
 
 
 def _by_level(values: Mapping[Any, Any]) -> dict[str, float]:

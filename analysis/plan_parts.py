@@ -17,6 +17,63 @@ class TTestPlan:
 
 
 @dataclass(frozen=True)
+class ComparisonPlan:
+    """t tests over everything or in each level of a factor.
+
+    kind: against (a value, `against`), paired or independent (all pairs of levels of `factor`).
+    """
+
+    kind: str
+    factor: str | None
+    each: str | None
+    against: float | None
+    label: str
+    where: str | None = None
+
+
+@dataclass(frozen=True)
+class PairsPlan:
+    """Pairs of marginal means of `factors` inside each level of `by`, whether or not an effect is significant."""
+
+    factors: tuple[str, ...]
+    by: tuple[str, ...]
+    adjust: str
+    model: str
+
+
+@dataclass(frozen=True)
+class ProportionsPlan:
+    """How often `success` (a condition) is met in each cell of the factors, against chance."""
+
+    success: str
+    each: tuple[str, ...]
+    chance: float
+    label: str
+
+
+@dataclass(frozen=True)
+class DPrimePlan:
+    """Sensitivity: `answer` against `signal`, both conditions, in each cell of the factors."""
+
+    signal: str
+    answer: str
+    each: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class PsychometricPlan:
+    """How `success` (a condition) rises along `level`; lapse None: estimated."""
+
+    level: str
+    success: str
+    each: tuple[str, ...]
+    shape: str
+    guess: float
+    lapse: float | None
+    bootstrap: int
+
+
+@dataclass(frozen=True)
 class EquivalencePlan:
     """Two one-sided tests of every pair of levels; bound in the unit of the measure."""
 

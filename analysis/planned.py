@@ -17,6 +17,7 @@ from analysis.figures import draw
 from analysis.headlines import headlines
 from analysis.journal import read_study
 from analysis.latex import latex_tables
+from analysis.marginal_means import emmeans_of, marginal_means
 from analysis.plan import read_plan
 from analysis.report import Drawn, report
 from analysis.results import PlannedResults
@@ -106,17 +107,35 @@ def _tables(results: PlannedResults) -> dict[str, pd.DataFrame]:
         "cell_means.csv": results.cells,
         "descriptives.csv": results.descriptives,
         "anova.csv": anova,
+        "marginal_means.csv": _marginal_means(results),
         "posthoc.csv": results.posthoc,
         "ttests.csv": results.ttests,
         "normality.csv": results.normality,
         "assumptions.csv": results.assumptions,
     }
-    second = {"regression": "regression_cases.csv", "aligned_rank_transform": "aligned_rank_contrasts.csv"}
+    second = {
+        "regression": "regression_cases.csv", "aligned_rank_transform": "aligned_rank_contrasts.csv",
+        "proportions": "proportions_participants.csv", "d_prime": "d_prime_participants.csv",
+        "psychometric": "psychometric_fits.csv",
+    }  # fmt: skip
     for test in results.further:
         tables[f"{test.kind}.csv"] = test.table
         if test.kind in second:
             tables[second[test.kind]] = test.more
     return tables
+
+
+def _marginal_means(results: PlannedResults) -> pd.DataFrame:
+    """Estimated marginal means of every effect of the ANOVA: effect, level, emmean, se, df, 95 % limits."""
+    columns = ["effect", "level", "emmean", "se", "df", "ci_low", "ci_high"]
+    parts = []
+    if results.means is not None:
+        for effect in results.anova["effect"]:
+            factors = effect.split(":")
+            table = emmeans_of(marginal_means(results.means, factors), results.plan.model)
+            level = [" × ".join(cell) for cell in table[factors].itertuples(index=False)]
+            parts.append(table.assign(effect=effect, level=level)[columns])
+    return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=columns)
 
 
 def _figures(results: PlannedResults) -> tuple[list[DrawnFigure], list[str]]:

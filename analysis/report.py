@@ -11,7 +11,7 @@ from analysis.drawing import DrawnFigure
 from analysis.headlines import headlines
 from analysis.markup import Cell, Markup, bullets, element, image, join, table, text
 from analysis.report_cells import str_right
-from analysis.report_descriptives import descriptives_section, normality_section
+from analysis.report_descriptives import assumptions_section, descriptives_section, normality_section
 from analysis.report_further import further_sections
 from analysis.report_sections import anova_section, posthoc_section, t_tests_section
 from analysis.report_style import STYLE
@@ -42,7 +42,7 @@ def report(results: PlannedResults, drawn: Mapping[str, Drawn], files: Sequence[
         _warnings(results),
         _participants(results),
         element("h2", "Method"),
-        element("p", report_text.methods_paragraph(results)),
+        *(element("p", paragraph) for paragraph in report_text.methods_paragraphs(results)),
         element("p", plan.about, class_="note") if plan.about else "",
         *_tests(results, drawn),
         *further,
@@ -68,6 +68,7 @@ def _tests(results: PlannedResults, drawn: Mapping[str, Drawn]) -> list[Markup]:
         posthoc_section(results),
         further_sections(results, pictures.checks),
         normality_section(results),
+        assumptions_section(results),
         descriptives_section(results),
     ]
 
@@ -76,7 +77,7 @@ def _further_title(results: PlannedResults) -> Markup:
     return join(
         [
             element("h1", f"Also: {results.plan.label}", class_="measure"),
-            element("p", report_text.methods_paragraph(results)),
+            *(element("p", paragraph) for paragraph in report_text.methods_paragraphs(results)),
         ]
     )
 

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from analysis import apa
 from analysis.drawing import DrawnFigure
-from analysis.markup import Cell, Markup, element, image
+from analysis.markup import Cell, Markup, bullets, element, image, join
 from analysis.results import PlannedResults, unit_decimals
+
+Columns = dict[str, tuple[object, Cell]]
+D, F, P, T, BF = element("i", "d"), element("i", "F"), element("i", "p"), element("i", "t"), "BF₁₀"
 
 
 def str_right(value: object) -> str:
@@ -53,3 +57,15 @@ def check_plot(plot: DrawnFigure | None) -> Markup:
     picture = image(plot.svg, "image/svg+xml", plot.caption)
     figure = element("figure", picture, element("figcaption", plot.caption), class_="check")
     return element("details", element("summary", "Q–Q plot"), figure)
+
+
+def section(title: str, tables: Sequence[object], notes: Sequence[str], sentences: Sequence[str]) -> Markup:
+    """A test's part of the page: tables, notes, and its sentences to unfold."""
+    return join(
+        [
+            element("h2", title),
+            *tables,
+            *(element("p", note, class_="note") for note in notes if note),
+            element("details", element("summary", "The same as sentences"), bullets(sentences)),
+        ]
+    )

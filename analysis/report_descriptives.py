@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from analysis import apa, report_text
+from analysis.errors import listed
 from analysis.markup import Cell, Markup, element, join, table, text
-from analysis.report_cells import interval, p_cell, str_right, unit_cell
+from analysis.report_cells import degrees_cell, interval, p_cell, str_right, unit_cell
 from analysis.results import ALPHA, PlannedResults
 
 
@@ -31,6 +32,34 @@ def normality_section(results: PlannedResults) -> Markup:
                 "details",
                 element("summary", f"Shapiro–Wilk test of each of the {len(cells)} cells"),
                 table(cells, columns, list(cells["p"] < ALPHA)),
+            ),
+        ]
+    )
+
+
+def assumptions_section(results: PlannedResults) -> Markup:
+    """Every check in one table to unfold; the sentences that matter stand beside the tests."""
+    data = results.assumptions
+    if not len(data):
+        return Markup("")
+    columns: dict[str, tuple[object, Cell]] = {
+        "check": ("Check", text),
+        "where": ("of", text),
+        "statistic": ("statistic", apa.figures),
+        "df1": ("df or n", degrees_cell),
+        "df2": ("df", degrees_cell),
+        "p": (element("i", "p"), p_cell),
+        "note": ("", text),
+    }
+    kinds = listed(dict.fromkeys(data["check"]), 12)
+    return join(
+        [
+            element("h2", "All checks of assumptions"),
+            element("p", f"{kinds}; bold: p < .05. None of them decides which test is reported.", class_="note"),
+            element(
+                "details",
+                element("summary", f"The {len(data)} checks"),
+                table(data, columns, list(data["p"] < ALPHA)),
             ),
         ]
     )

@@ -3,41 +3,42 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import pandas as pd
 
 from analysis import apa
 from analysis.drawing import DrawnFigure
 from analysis.further_tests import FurtherTest
-from analysis.markup import Cell, Markup, bullets, element, join, table, text
-from analysis.report_cells import check_plot, degrees_cell, interval, p_cell, share_cell, str_right, unit_cell
+from analysis.markup import Markup, element, join, table, text
+from analysis.report_cells import (
+    Columns,
+    F,
+    P,
+    T,
+    check_plot,
+    degrees_cell,
+    interval,
+    p_cell,
+    section,
+    share_cell,
+    str_right,
+    unit_cell,
+)
+from analysis.report_choices import CHOICE_SECTIONS
 from analysis.results import ALPHA, PlannedResults
-
-Columns = dict[str, tuple[object, Cell]]
-F, P, T = element("i", "F"), element("i", "p"), element("i", "t")
 
 
 def further_sections(results: PlannedResults, plots: Mapping[str, DrawnFigure]) -> Markup:
     """One section for each further test, in the order of the plan."""
     write = {
+        **CHOICE_SECTIONS,
         "equivalence": _equivalence,
         "regression": _regression,
         "aligned_rank_transform": _rank_transform,
         "mixed_model": _mixed_model,
     }
     return join(write[test.kind](test, results, plots) for test in results.further)
-
-
-def _section(title: str, tables: Sequence[object], notes: Sequence[str], sentences: Sequence[str]) -> Markup:
-    return join(
-        [
-            element("h2", title),
-            *tables,
-            *(element("p", note, class_="note") for note in notes if note),
-            element("details", element("summary", "The same as sentences"), bullets(sentences)),
-        ]
-    )
 
 
 def _normality(what: str, w: float, p: float) -> str:
@@ -71,7 +72,7 @@ def _equivalence(test: FurtherTest, results: PlannedResults, plots: Mapping[str,
         "levels are when all pairs are, so p is not corrected. Not shown does not mean different. Shapiro–Wilk: of "
         "participants' differences, which the tests take to be normal; none between groups.",
     ]
-    return _section("Equivalence", [table(shown, columns, list(data["equivalent"]))], notes, list(data["sentence"]))
+    return section("Equivalence", [table(shown, columns, list(data["equivalent"]))], notes, list(data["sentence"]))
 
 
 def _regression(test: FurtherTest, results: PlannedResults, plots: Mapping[str, DrawnFigure]) -> Markup:
@@ -93,7 +94,7 @@ def _regression(test: FurtherTest, results: PlannedResults, plots: Mapping[str, 
         *test.notes,
     ]
     tables = [table(data.assign(limits=limits), columns, list(data["p"] < ALPHA)), check_plot(plots.get("regression"))]
-    return _section("Regression", tables, notes, list(data["sentence"]))
+    return section("Regression", tables, notes, list(data["sentence"]))
 
 
 def _rank_transform(test: FurtherTest, results: PlannedResults, plots: Mapping[str, DrawnFigure]) -> Markup:
@@ -126,7 +127,7 @@ def _rank_transform(test: FurtherTest, results: PlannedResults, plots: Mapping[s
         )
     ]
     sentences = [f"{apa.effect_name(row['effect'])}: {row['sentence']}" for row in data.to_dict("records")]
-    return _section("Aligned rank transform", parts, notes, sentences)
+    return section("Aligned rank transform", parts, notes, sentences)
 
 
 def _mixed_model(test: FurtherTest, results: PlannedResults, plots: Mapping[str, DrawnFigure]) -> Markup:
@@ -162,7 +163,7 @@ def _mixed_model(test: FurtherTest, results: PlannedResults, plots: Mapping[str,
         for row in data.to_dict("records")
         if row["part"] != "coefficient"
     ]
-    return _section("Mixed model", tables, notes, sentences)
+    return section("Mixed model", tables, notes, sentences)
 
 
 def _effects(data: pd.DataFrame, name: str, df1: str, df2: str) -> pd.DataFrame:

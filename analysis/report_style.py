@@ -7,7 +7,7 @@ STYLE = """
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--wash); color: var(--ink);
        font: 16px/1.6 system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }
-main { max-width: 66rem; margin: 2rem auto; padding: 2.5rem 3.25rem 3rem; background: var(--paper);
+main { max-width: 70rem; margin: 2rem auto; padding: 2.5rem 3rem 3rem; background: var(--paper);
        border: 1px solid var(--line); border-radius: 10px; }
 h1 { font-size: 1.9rem; line-height: 1.25; margin: 0 0 .3rem; letter-spacing: -.01em; }
 h2 { font-size: 1.3rem; margin: 2.6rem 0 .7rem; padding-top: .9rem; border-top: 1px solid var(--line); }
@@ -27,10 +27,10 @@ li { margin: .25rem 0; }
 .facts dt { color: var(--soft); font-size: .82rem; }
 .facts dd { margin: 0; font-size: 1.3rem; font-variant-numeric: tabular-nums; }
 .scroll { overflow-x: auto; margin: .7rem 0 .3rem; }
-table { border-collapse: collapse; font-size: .86rem; font-variant-numeric: tabular-nums; width: 100%; }
-th { font-weight: 600; color: var(--soft); border-bottom: 1.5px solid #b8c2cf; padding: .3rem .5rem;
+table { border-collapse: collapse; font-size: .84rem; font-variant-numeric: tabular-nums; width: 100%; }
+th { font-weight: 600; color: var(--soft); border-bottom: 1.5px solid #b8c2cf; padding: .3rem .42rem;
      vertical-align: bottom; }
-td { border-bottom: 1px solid var(--line); padding: .26rem .5rem; white-space: nowrap; }
+td { border-bottom: 1px solid var(--line); padding: .26rem .42rem; white-space: nowrap; }
 thead { border-top: 1.5px solid #b8c2cf; }
 .left { text-align: left; } .right { text-align: right; }
 tr.found td { font-weight: 600; }

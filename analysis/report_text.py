@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 
+from analysis.answers import readable
 from analysis.apa import degrees, number, p_value, share
 from analysis.errors import listed
+from analysis.plan import AnalysisPlan
 from analysis.results import ALPHA, PlannedResults
 
 
@@ -46,10 +48,11 @@ def _is_number(value: object) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def methods_paragraph(results: PlannedResults) -> str:
-    """As it could stand in a Methods section."""
+def methods_paragraphs(results: PlannedResults) -> list[str]:
+    """As they could stand in a Methods section: the analysis of variance, then the other tests."""
     plan = results.plan
-    words = _anova_methods(results) if plan.within or plan.between else []
+    first = _anova_methods(results) if plan.within or plan.between else []
+    words: list[str] = []
     for test in plan.t_tests:
         words.append(
             f"For each {test.each}, participants' mean {plan.label.lower()}"
@@ -57,6 +60,7 @@ def methods_paragraph(results: PlannedResults) -> str:
             + f" was compared with the {test.label} in a "
             "two-sided one-sample t test; these p values are not corrected for their number."
         )
+    words += choice_methods(plan)
     for same in plan.equivalence:
         inside = f" inside every level of {same.by}" if same.by else ""
         words.append(
@@ -78,8 +82,47 @@ def methods_paragraph(results: PlannedResults) -> str:
             "(REML, Satterthwaite degrees of freedom)."
         )
     if plan.normality and results.means is not None:
-        words.append("Normality was assessed with Shapiro–Wilk tests of the residuals and of every cell.")
-    return " ".join(words) or "The study file plans no test."
+        first.append("Normality was assessed with Shapiro–Wilk tests of the residuals and of every cell.")
+    return [" ".join(part) for part in (first, words) if part] or ["The study file plans no test."]
+
+
+def choice_methods(plan: AnalysisPlan) -> list[str]:
+    """Sentences on the t tests of pairs, planned pairs, proportions, d' and psychometric functions of a plan."""
+    words = []
+    for test in plan.comparisons:
+        inside = f" in every {test.each}" if test.each else ""
+        trials = f" in trials with {test.where}" if test.where else ""
+        how = {
+            "paired": f"compared between all pairs of levels of {test.factor} in paired t tests",
+            "independent": f"compared between the groups of {test.factor} in Student's and Welch's t tests",
+            "against": f"compared with the {test.label} of {test.against or 0.0:g} in a one-sample t test",
+        }[test.kind]
+        words.append(f"Participants' mean {plan.label.lower()}{trials} was {how}{inside} (two-sided, uncorrected).")
+    for pairs in plan.pairs:
+        inside = f" inside every {listed(pairs.by)}" if pairs.by else ""
+        words.append(
+            f"Planned comparisons of {listed(pairs.factors)}{inside} used estimated marginal means "
+            f"({pairs.model} model, {pairs.adjust})."
+        )
+    for share_of in plan.proportions:
+        inside = f" in every {listed(share_of.each)}" if share_of.each else ""
+        words.append(
+            f"The share of trials with {readable(share_of.success)}{inside} was tested against {share_of.chance:g} "
+            "with an exact binomial test of all trials and a t test of participants' shares."
+        )
+    if plan.d_prime is not None:
+        inside = f" in every {listed(plan.d_prime.each)}" if plan.d_prime.each else ""
+        words.append(
+            f"Sensitivity d′ was computed for every participant{inside} (signal: {readable(plan.d_prime.signal)}; "
+            f"yes: {readable(plan.d_prime.answer)}; log-linear rule) and tested against 0."
+        )
+    if plan.psychometric is not None:
+        inside = f" and {listed(plan.psychometric.each)}" if plan.psychometric.each else ""
+        words.append(
+            f"A psychometric function of {plan.psychometric.level} was fitted to the trials of every "
+            f"participant{inside} by maximum likelihood, and thresholds were compared over participants."
+        )
+    return words
 
 
 def _anova_methods(results: PlannedResults) -> list[str]:

@@ -11,6 +11,7 @@ from analysis.cells import CellMeans
 from analysis.further_tests import FurtherTest
 from analysis.journal import RecordedStudy
 from analysis.plan import AnalysisPlan
+from analysis.trials import used_trials
 
 ALPHA = 0.05
 
@@ -42,8 +43,8 @@ class PlannedResults:
 
     @property
     def used(self) -> pd.DataFrame:
-        """The trials that were not excluded."""
-        return self.trials[self.trials["excluded"] == ""] if "excluded" in self.trials else self.trials
+        """The rows the tests rest on (`used_trials`)."""
+        return used_trials(self.trials, self.plan)
 
     @property
     def significant(self) -> list[str]:
@@ -52,6 +53,7 @@ class PlannedResults:
 
 
 def unit_decimals(results: PlannedResults) -> int:
-    """Decimals that show a hundredth of the standard deviation of the measure."""
+    """Decimals that show a hundredth of the standard deviation of the measure; of percentages at least one."""
     sd = float(results.cells["mean"].std()) if len(results.cells) > 1 else math.nan
-    return 2 if not sd > 0 else min(12, max(0, 1 - math.floor(math.log10(sd))))
+    least = 1 if results.plan.unit == "%" else 0
+    return 2 if not sd > 0 else min(12, max(least, 1 - math.floor(math.log10(sd))))

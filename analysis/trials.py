@@ -9,9 +9,10 @@ import pandas as pd
 from analysis.columns import label, numeric_label
 from analysis.errors import AnalysisError, listed
 from analysis.exclusions import matching
-from analysis.gait_measures import normalised_gait
+from analysis.gait_measures import gaze_rows, normalised_gait
 from analysis.journal import RecordedRun, RecordedStudy
-from analysis.plan import AnalysisPlan
+from analysis.plan import GAZE_SHARE, AnalysisPlan
+from protocols.gaze import REGIONS
 
 COUNTS = ("response_time", "key_presses", "reversals", "late_frames")
 
@@ -31,7 +32,7 @@ def trials_table(recorded: RecordedStudy, plan: AnalysisPlan) -> pd.DataFrame:
             table.insert(place, name, table[groups.of].map(numeric_label).map(groups.group_of))
     for one in (plan, *plan.also):
         _add_derived(table, one)
-        if one.measure not in table.columns:
+        if one.measure not in table.columns and one.measure != GAZE_SHARE:
             raise AnalysisError(
                 f"The planned measure {one.measure!r} is no column of the trials; "
                 f"they have {listed(table.columns, 40)}."
@@ -41,6 +42,12 @@ def trials_table(recorded: RecordedStudy, plan: AnalysisPlan) -> pd.DataFrame:
         chosen = matching(table, exclusion.where) & (table["excluded"] == "")
         table.loc[chosen, "excluded"] = exclusion.reason
     return table
+
+
+def used_trials(trials: pd.DataFrame, plan: AnalysisPlan) -> pd.DataFrame:
+    """The rows a plan's tests rest on: trials that are not excluded; of gaze shares, a row per trial and region."""
+    used = trials[trials["excluded"] == ""] if "excluded" in trials else trials
+    return gaze_rows(used, REGIONS) if plan.measure == GAZE_SHARE else used
 
 
 def _row(run: RecordedRun, trial: dict[str, Any], plan: AnalysisPlan) -> dict[str, Any]:

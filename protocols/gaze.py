@@ -6,6 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+REGIONS = ("legs", "arms", "torso", "head", "elsewhere")
+"""Body parts of Niay (2022, section 4.3.2); arms with hands, elsewhere the ground, the treadmill and the background."""
+
 Label = Annotated[str, Field(min_length=1, max_length=80)]
 
 

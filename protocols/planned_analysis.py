@@ -5,8 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
+from protocols.gaze import REGIONS
 from protocols.mistake import Mistake, Place, no_such
+from protocols.planned_tests import test_mistakes
 from protocols.study import FurtherAnalysis, Level, Study
+
+GAZE_SHARE = "gaze_share"
+"""The measure that any task gives when gaze is recorded: % of looking time on every region."""
 
 TABLE_COLUMNS = ("study", "participant", "run", "trial", "block", "repetition")
 """Columns that every table of trials has."""
@@ -23,23 +28,21 @@ def analysis_mistakes(study: Study) -> Iterator[Mistake]:
         measures.add(plan.measure)
         yield from _measure(study, plan, at)
         yield from _factors_of_tests(study, plan, at)
-        yield from _t_tests(study, plan, at)
+        within, columns = within_factors(study, plan), [*columns_of(study), *within_factors(study, plan)]
+        yield from test_mistakes(study, plan, at, within, columns)
         yield from _equivalence_and_regression(study, plan, at)
         yield from _figures(study, plan, at)
-    columns = [
-        *_columns(study),
-        *within_factors(study),
-        *study.participants.between,
-        "late_frames",
-        "key_presses",
-        "reversals",
-    ]
-    for i, exclusion in enumerate(study.analysis.exclusions):
-        yield from _condition(exclusion.where, ("analysis", "exclusions", i, "where"), columns)
-    for at, plan in [(top, study.analysis), *(((*top, "also", i), p) for i, p in enumerate(study.analysis.also))]:
         for i, test in enumerate(plan.t_tests):
             if test.where is not None:
                 yield from _condition(test.where, (*at, "t_tests", i, "where"), columns)
+    columns = [*columns_of(study), *within_factors(study)]
+    for i, exclusion in enumerate(study.analysis.exclusions):
+        yield from _condition(exclusion.where, ("analysis", "exclusions", i, "where"), columns)
+
+
+def columns_of(study: Study) -> list[str]:
+    """Columns that a condition may name, besides the within factors."""
+    return [*_columns(study), *study.participants.between, "late_frames", "key_presses", "reversals"]
 
 
 def _columns(study: Study) -> tuple[str, ...]:
@@ -47,10 +50,11 @@ def _columns(study: Study) -> tuple[str, ...]:
     return (*study.task.responses, "response_time")
 
 
-def within_factors(study: Study) -> dict[str, list[Level]]:
-    """Within-participant factors and their levels, those made of groups of levels too."""
+def within_factors(study: Study, plan: FurtherAnalysis | None = None) -> dict[str, list[Level]]:
+    """Within-participant factors and their levels: of the design, made of groups of levels, and regions of gaze."""
     made: dict[str, list[Level]] = {name: [*groups.levels] for name, groups in study.analysis.groups.items()}
-    return {**study.factors, **made}
+    regions: dict[str, list[Level]] = {"region": [*REGIONS]} if plan and plan.measure == GAZE_SHARE else {}
+    return {**study.factors, **made, **regions}
 
 
 def _condition(text: str, where: Place, columns: Iterable[str]) -> Iterator[Mistake]:
@@ -91,8 +95,10 @@ def _covered(study: Study, where: Place, given: Iterable[str], factor: str, what
 
 def _measure(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
     actor = study.stimulus.actor
-    if plan.measure not in study.task.measures:
-        given = ", ".join(study.task.measures)
+    if plan.measure == GAZE_SHARE and "region" in study.factors:
+        yield Mistake(("factors", "region"), "is what gaze_share calls the part looked at; rename it", on_key=True)
+    if plan.measure not in (*study.task.measures, GAZE_SHARE):
+        given = ", ".join((*study.task.measures, GAZE_SHARE))
         message = f"{plan.measure} is not what {study.task.kind} trials give; they give {given}"
         yield Mistake((*at, "measure"), message)
         return
@@ -108,7 +114,7 @@ def _measure(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake
 
 
 def _factors_of_tests(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
-    factors = within_factors(study)
+    factors = within_factors(study, plan)
     within, between = list(factors), list(study.participants.between)
     named = [
         (("anova", "within"), plan.anova.within, within, "within factor"),
@@ -139,21 +145,6 @@ def _factors_of_tests(study: Study, plan: FurtherAnalysis, at: Place) -> Iterato
                 yield Mistake((*at, *place, i), f"{name} stands twice; remove one")
 
 
-def _t_tests(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
-    for i, test in enumerate(plan.t_tests):
-        factors = within_factors(study)
-        if test.each not in factors:
-            yield Mistake((*at, "t_tests", i, "each"), no_such(test.each, factors, "factor"))
-            continue
-        levels = [str(level) for level in factors[test.each]]
-        without = [level for level in levels if level not in test.against]
-        for level in test.against:
-            # values for levels that are not shown do no harm, unless one of them may be misspelt
-            if level not in levels and without:
-                message = no_such(level, levels, f"level of {test.each}")
-                yield Mistake((*at, "t_tests", i, "against", level), message, on_key=True)
-
-
 def _equivalence_and_regression(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
     in_anova = plan.anova.within + plan.anova.between
     for i, same in enumerate(plan.equivalence):
@@ -177,7 +168,7 @@ def _equivalence_and_regression(study: Study, plan: FurtherAnalysis, at: Place) 
 
 
 def _figures(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
-    factors = [*within_factors(study), *study.participants.between]
+    factors = [*within_factors(study, plan), *study.participants.between]
     labels = [test.label for test in plan.t_tests]
     for i, figure in enumerate(plan.figures):
         where: Place = (*at, "figures", i)
@@ -188,6 +179,8 @@ def _figures(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake
             yield Mistake(where, f"a figure of kind {figure.kind} needs x: the factor on the x axis")
         if figure.kind == "t_tests" and figure.reference is None:
             yield Mistake(where, "a figure of t_tests needs reference: the label of the t-test it shows")
+        if figure.kind in ("proportions", "psychometric") and not getattr(plan, figure.kind):
+            yield Mistake(where, f"a figure of kind {figure.kind} needs {figure.kind} in this analysis")
         if figure.kind == "regression" and plan.regression is None:
             yield Mistake(where, "a figure of the regression needs a regression in this analysis")
         if figure.panels is not None and figure.panels not in study.analysis.groups:

@@ -11,6 +11,7 @@ from pydantic import ConfigDict, Field
 
 from protocols.adjustment_part import Adjustment
 from protocols.choice_part import Choice
+from protocols.further_tests import DPrime, Pairs, Proportions, Psychometric, TTest
 from protocols.order import ListOrder, Order
 from protocols.parts import Key, Level, Name, Number, Part, Text
 from protocols.rating_part import Rating
@@ -158,15 +159,6 @@ class PostHoc(Part):
     model: Literal["multivariate", "univariate"] = "multivariate"
 
 
-class TTest(Part):
-    """One-sample t-tests of every level of a factor against given values."""
-
-    each: Name
-    against: dict[str, Number] = Field(min_length=1, description="Level: value to test against.")
-    label: Text = "reference value"
-    where: Text | None = Field(None, description="Only trials that meet a condition, as `character == matched`.")
-
-
 class Equivalence(Part):
     """Evidence for sameness: two one-sided tests of every pair of levels of a factor."""
 
@@ -204,12 +196,16 @@ class MixedModel(Part):
 class Figure(Part):
     """A figure of the report."""
 
-    kind: Literal["means", "interaction", "raincloud", "qq", "order", "t_tests", "regression"] = Field(
+    kind: Literal[
+        "means", "interaction", "raincloud", "qq", "order", "t_tests", "regression", "proportions", "psychometric"
+    ] = Field(
         description="qq: residuals against a normal distribution; order: the measure over the session, for learning; "
         "t_tests: what was measured and what it was tested against, level by level; regression: the measure over "
-        "every predictor."
+        "every predictor; proportions and psychometric: the tests of that name."
     )
-    x: Name | None = Field(None, description="Factor on the x axis; qq, order, t_tests and regression have none.")
+    x: Name | None = Field(
+        None, description="Factor on the x axis of means, interaction and raincloud; the others have none."
+    )
     lines: Name | None = None
     reference: Text | None = Field(
         None, description="Label of the t-test whose values are drawn as diamonds; the t-test of a t_tests figure."
@@ -238,11 +234,12 @@ class FurtherAnalysis(Part):
 
     measure: Literal[
         "walk_ratio", "step_frequency", "step_length", "response_time", "normalised_walk_ratio", "confusion_rate",
-        "correct", "rating",
+        "correct", "rating", "gaze_share",
     ] = Field(
         "walk_ratio",
         description="normalised_walk_ratio needs heights; confusion_rate (%) and correct (0 or 1) need trials in which "
-        "one of two is chosen, rating (of the scale) those in which one is rated.",
+        "one of two is chosen, rating (of the scale) those in which one is rated; gaze_share (% of looking time) has "
+        "the within factor region: legs, arms, torso, head, elsewhere.",
     )  # fmt: skip
     label: Text = "Walk ratio"
     unit: str = "m·min"
@@ -252,6 +249,10 @@ class FurtherAnalysis(Part):
     anova: Anova = Anova()
     post_hoc: PostHoc | None = PostHoc()
     t_tests: list[TTest] = Field(default_factory=list)
+    pairs: list[Pairs] = Field(default_factory=list)
+    proportions: list[Proportions] = Field(default_factory=list)
+    d_prime: DPrime | None = None
+    psychometric: Psychometric | None = None
     equivalence: list[Equivalence] = Field(default_factory=list)
     regression: Regression | None = None
     aligned_rank_transform: RankTransform | None = None

@@ -6,8 +6,7 @@ from bisect import bisect_left
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
-REGIONS = ("legs", "arms", "torso", "head", "elsewhere")
-"""Body parts of Niay (2022, section 4.3.2); arms with hands, elsewhere the ground, the treadmill and the background."""
+from protocols.gaze import REGIONS
 
 UNKNOWN = "unknown"
 """The region of a frame for which the eye tracker gave no gaze, as in a blink."""

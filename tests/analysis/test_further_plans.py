@@ -179,7 +179,7 @@ WRONG = {
     "  mixed_model: {stimulus: actor, factors: [actor]}": "the random stimulus already",
     "  mixed_model: {stimulus: sex, factors: [speed]}": "sex is no within factor",
     "  also: [{measure: walk_ratio}]": "walk_ratio is analysed twice",
-    "  also: [{measure: confusion_rate}]": "one of two walks is chosen",
+    "  also: [{measure: confusion_rate}]": "is not what adjustment trials give",
     "  also: [{measure: normalised_walk_ratio}]": "needs heights",
     "  also: [{measure: normalised_walk_ratio, heights: {F1: 1.7}}]": "the height of F2, M1, M2 is missing",
     "  heights: {F1: 1.7}": "walk_ratio needs no heights",

@@ -43,10 +43,13 @@ def test_every_gaitlab_command_and_the_python_run(tmp_path: Path, monkeypatch: p
 
 
 def test_the_plan_on_the_page_is_accepted() -> None:
-    (plan,) = blocks("yaml")
+    plan, choices = blocks("yaml")
     head, _, rest = study_text().partition("\nanalysis:")
     text = f"{head}\n{plan}\n{rest[rest.index('# Simulated observers') :]}"
     assert inconsistencies(parse_study("page.yaml", text).study) == []
+    choosing = Path(__file__).with_name("choosing.yaml").read_text(encoding="utf-8")
+    head, rest = choosing[: choosing.index("analysis:")], choosing[choosing.index("simulation:") :]
+    assert inconsistencies(parse_study("page.yaml", f"{head}{choices}{rest}").study) == []
 
 
 def test_no_difference_from_r_is_larger_than_the_page_says() -> None:
