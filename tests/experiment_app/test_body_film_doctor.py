@@ -131,3 +131,43 @@ def test_the_gallery_page_shows_every_picture_the_command_makes(tmp_path, capfd)
     assert made
     assert all(f"images/{name}" in page for name in made)
     assert page.count("](images/") == len(made)
+
+
+@pytest.mark.parametrize("ending", ["mp4", "webm"])
+def test_a_video_keeps_colours_and_says_how_they_are_coded(tmp_path, ending):
+    """BT.709 in the file's own words; read as another matrix, this red would be off by ten codes and more."""
+    from fractions import Fraction
+
+    import numpy as np
+
+    from experiment_app.film import write_film
+
+    av = pytest.importorskip("av")
+    colours = [(200, 40, 45), (40, 90, 200), (128, 128, 128), (60, 160, 70)]
+    frame = np.zeros((128, 256, 3), np.uint8)
+    for i, colour in enumerate(colours):
+        frame[:, 64 * i : 64 * (i + 1)] = colour
+    path = tmp_path / f"colours.{ending}"
+    write_film(iter([frame] * 6), Fraction(30), path)
+    with av.open(str(path)) as file:
+        about = file.streams.video[0].codec_context
+        assert (int(about.colorspace), int(about.color_range)) == (1, 1)
+        (*_, last) = file.decode(video=0)
+        read = last.to_ndarray(format="rgb24")
+    for i, colour in enumerate(colours):
+        assert np.abs(read[32:96, 64 * i + 16 : 64 * i + 48].astype(int) - colour).max() <= 4
+
+
+def test_an_animated_picture_has_the_length_asked_for(tmp_path):
+    from fractions import Fraction
+
+    import numpy as np
+    from PIL import Image
+
+    from experiment_app.film import write_film
+
+    frames = [np.full((40, 60, 3), 5 * i, np.uint8) for i in range(31)]
+    said_of_it = write_film(iter(frames), Fraction(60000, 1001), tmp_path / "clip.webp")
+    assert "read back: every frame within 0.5 ms" in said_of_it
+    with Image.open(tmp_path / "clip.webp") as film:
+        assert film.n_frames == 31
