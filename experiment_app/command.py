@@ -6,6 +6,7 @@ Exit status: 0 fine, 1 something failed, 2 wrong usage or study file.
 from __future__ import annotations
 
 import sys
+from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -368,17 +369,12 @@ def film(
     ] = Path("clip.mp4"),
 ) -> int:
     """Film a condition of a study off-screen at an exact frame rate; the frame times are read back and verified."""
-    from fractions import Fraction
-
     from experiment_app.check import checked_study
     from experiment_app.film import condition_of, film_scenes, walking, write_film
 
-    try:
-        frame_rate = Fraction(rate)
-    except (ValueError, ZeroDivisionError):
-        raise UsageError(f"--rate {rate}: write a number, as 60, 59.94 or 60000/1001.") from None
-    if not 1 <= frame_rate <= 1000 or not 0 < seconds <= 3600:
-        raise UsageError("a film has 1 to 1000 frames per second and lasts up to an hour.")
+    frame_rate = _frame_rate(rate)
+    if not 0 < seconds <= 3600:
+        raise UsageError(f"--seconds {seconds:g}: a film lasts up to an hour.")
     width, height = _size(size)
     if path.suffix.lower() in (".mp4", ".mkv", ".mov", ".webm") and (width % 2 or height % 2):
         raise UsageError(f"--size {size}: videos need an even width and height.")
@@ -389,6 +385,42 @@ def film(
     frames = _with_progress(film_scenes(scenes, (width, height)), count, "Drawing")
     said = write_film(iter(frames), frame_rate, path)
     out.print(f"{path}: {said}", markup=False)
+    return 0
+
+
+@app.command
+def replay(
+    run: Annotated[
+        Path, Parameter(help="A run's folder, as data/walk_ratio/sourcedata/sub-P01/run-1, or its journal.")
+    ],
+    *,
+    trial: Annotated[int | None, Parameter(help="Only the trial with this number; by default all.")] = None,
+    practice: Annotated[bool, Parameter(negative="", help="Training trials instead.")] = False,
+    path: Annotated[
+        Path | None, Parameter(name="--film", help="Also film what was seen, with the response under it: clip.mp4.")
+    ] = None,
+    rate: Annotated[str, Parameter(help="Frames per second of the film.")] = "60",
+    size: Annotated[str, Parameter(help="Size of the walker's picture in the film.")] = "1280x720",
+) -> int:
+    """Make again what a participant saw, frame by frame, and check that it is what was drawn.
+
+    A film shows each frame for as long as it was on the screen, late ones too.
+    """
+    from experiment_app.replay.command import changed_versions, check_trial, film_trials, opened
+
+    recorded, plan, trials = opened(run, trial, practice)
+    if path is not None:
+        width, height = _size(size)
+        said = film_trials(plan, trials, path, _frame_rate(rate), (width, height), _with_progress)
+        out.print(f"{path}: {said}", markup=False)
+    checked = list(_with_progress((check_trial(plan, one) for one in trials), len(trials), "Checking"))
+    for one in checked:
+        out.print(one.sentence, markup=False)
+    different = [one for one in checked if one.different]
+    if different:
+        for note in changed_versions(recorded):
+            problems.print(f"Note: {note}.", style="yellow", markup=False)
+        raise RunError(f"{len(different)} of {len(checked)} trials are not what was drawn.")
     return 0
 
 
@@ -471,6 +503,17 @@ def _size(text: str) -> tuple[int, int]:
     if not (width.isdecimal() and height.isdecimal() and 320 <= int(width) <= 16384 and 200 <= int(height) <= 16384):
         raise UsageError(f"--size {text}: write width x height in pixels, at least 320x200, as 1280x720.")
     return int(width), int(height)
+
+
+def _frame_rate(text: str) -> Fraction:
+    """Frames per second from a text such as 60, 59.94 or 60000/1001; raises UsageError."""
+    try:
+        rate = Fraction(text)
+    except (ValueError, ZeroDivisionError):
+        raise UsageError(f"--rate {text}: write a number, as 60, 59.94 or 60000/1001.") from None
+    if not 1 <= rate <= 1000:
+        raise UsageError(f"--rate {text}: a film has 1 to 1000 frames per second.")
+    return rate
 
 
 def _version() -> str:

@@ -11,7 +11,7 @@ from experiment_app.scene import Scene
 from experiment_app.staging import stage
 from experiment_app.windows.window import Window
 from protocols.events import Saved, Shown
-from protocols.record import Key, Record, TrialRecord
+from protocols.record import Click, Key, Paused, Record, Resumed, TrialRecord
 from protocols.session import Interval, Session, advance, drained, handle
 
 
@@ -64,7 +64,7 @@ def run_session(session: Session, window: Window, journal: Recorder) -> Session:
 def _passed(session: Session, now: float) -> Session:
     """The session once time alone has moved it on to something new by `now` (s), else as it was."""
     later = advance(session, now)
-    return later if later.emitted or later.index != session.index else session
+    return later if later.emitted != session.emitted or later.index != session.index else session
 
 
 def _previewed(session: Session, seen: float) -> Session:
@@ -83,7 +83,7 @@ def _write(session: Session, journal: Recorder, window: Window, frames: TrialFra
     session, records = drained(session)
     whole: list[Record] = []
     for record in records:
-        if isinstance(record, Key):
+        if isinstance(record, (Key, Click, Paused, Resumed)):
             record = replace(record, frame=len(frames))
         elif isinstance(record, TrialRecord) and window.period and len(frames):
             log = frames.log(record, window.period)

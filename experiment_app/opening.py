@@ -93,7 +93,7 @@ def open_new(
         seed=seed,
         simulated=simulated,
         keys=study.study.task.keys_for(order),
-        versions=_versions(),
+        versions=recorded_versions(),
         display=display,
         started=_utc_now(),
         walkers=_provenance(study.study),
@@ -105,13 +105,18 @@ def open_new(
 
 def open_unfinished(run: Run, *, display: Mapping[str, Any]) -> OpenRun:
     """An unfinished run again, from its own copy of the study, at the first thing its policy has to be done."""
-    header = run.header
-    study = parse_study(f"{run.journal} (the study file it holds)", header["study_text"]).study
-    plan = make_plan(study, header["seed"], header["participant_number"], header.get("group"))
+    header, plan = run.header, recorded_plan(run)
     journal, run, torn = reopen_journal(run)
-    journal.write([Continued(0.0, _utc_now(), torn, display, _versions(), run.interruption)])
+    journal.write([Continued(0.0, _utc_now(), torn, display, recorded_versions(), run.interruption)])
     plan = remaining(plan, resuming.again(plan, progress(run)))
     return OpenRun(run, plan, journal, header["seed"], header["participant_number"], True, torn)
+
+
+def recorded_plan(run: Run) -> Plan:
+    """The whole plan of a recorded run, which follows from its header: the study it holds, the seed, the number."""
+    header = run.header
+    study = parse_study(f"{run.journal} (the study file it holds)", header["study_text"]).study
+    return make_plan(study, header["seed"], header["participant_number"], header.get("group"))
 
 
 def kind_of(simulated: bool, pilot: bool) -> str:
@@ -142,7 +147,8 @@ def _utc_now() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
 
 
-def _versions() -> dict[str, str]:
+def recorded_versions() -> dict[str, str]:
+    """Program to version, here and now, as a journal's header holds them."""
     versions = {"python": platform.python_version(), "system": platform.platform()}
     for name in RECORDED_VERSIONS:
         try:

@@ -222,6 +222,14 @@ def journal_lines(path: Path) -> tuple[tuple[dict[str, Any], ...], int]:
     return tuple(lines), 0
 
 
+def run_at(folder: Path) -> Run:
+    """The run recorded in a folder, as .../sub-P01/run-1; raises UsageError when there is none."""
+    lines = journal_lines(folder / JOURNAL)[0] if (folder / JOURNAL).is_file() else ()
+    if not lines:
+        raise UsageError(f"{folder} holds no recorded run; name a folder as data/walk_ratio/sourcedata/sub-P01/run-1.")
+    return Run(folder, lines[0]["study"], lines[0]["participant"], lines[0]["run"], lines)
+
+
 def _read(folder: Path, study: str, participant: str, number: int) -> Run:
     path = folder / JOURNAL
     lines = journal_lines(path)[0] if path.exists() else ()

@@ -98,13 +98,17 @@ class Key:
 
 @dataclass(frozen=True)
 class Click:
-    """A click of the pointer during a trial on something that answers; target as `scale:3`."""
+    """A click of the pointer during a trial on something that answers; target as `scale:3`.
+
+    frame: number (from 0) of the first frame of the trial drawn with this click known.
+    """
 
     kind = "click"
     time: float
     trial: int
     practice: bool
     target: str
+    frame: int = 0
 
 
 @dataclass(frozen=True)
@@ -157,20 +161,25 @@ class TrialRecord:
 
 @dataclass(frozen=True)
 class Paused:
-    """The session was paused: by the participant (a break), a set break, the pause page or lost focus."""
+    """The session was paused: by the participant (a break), a set break, the pause page or lost focus.
+
+    frame: number (from 0) of the first frame of the trial drawn with it known; without a trial it means nothing.
+    """
 
     kind = "pause"
     time: float
     why: str
+    frame: int = 0
 
 
 @dataclass(frozen=True)
 class Resumed:
-    """The session went on after a pause."""
+    """The session went on after a pause; frame as in Paused."""
 
     kind = "resume"
     time: float
     paused: float
+    frame: int = 0
 
 
 @dataclass(frozen=True)
