@@ -196,11 +196,20 @@ def import_actor(
     replace: Annotated[bool, Parameter(negative="", help="Take the place of an actor of that name.")] = False,
 ) -> int:
     """Make an actor of a folder of captured walks; speed and step frequency are found in the clips."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
     from stimuli.actor_library import library_folder
     from stimuli.importing.folder import import_folder
 
     _use(library)
-    actor = import_folder(folder, name, replace=replace)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=out, transient=True) as bar:
+        task = bar.add_task("Reading clips", total=None)
+
+        def told(done: int, of: int) -> None:
+            bar.update(task, completed=done, total=of)
+
+        actor = import_folder(folder, name, replace=replace, told=told)
     out.print(f"{name}: {actor.provenance}", markup=False)
     for frequency, row in actor.rows:
         places = "  ".join(f"{cycle.speed:.2f}{'' if cycle.files else ' (modelled)'}" for cycle in row)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -30,15 +31,21 @@ SLIDE = 5.0
 
 
 def import_folder(
-    folder: Path, name: str, library: Path | None = None, replace: bool = False, complete: bool | None = None
+    folder: Path,
+    name: str,
+    library: Path | None = None,
+    replace: bool = False,
+    complete: bool | None = None,
+    told: Callable[[int, int], None] | None = None,
 ) -> StoredActor:
     """Imports the captures of a folder as the actor `name` and stores it; returns what was stored.
 
-    complete: overrides what actor.yaml says. Raises MotionFileError or ActorError; then nothing was stored.
+    complete: overrides what actor.yaml says; told: called with the number of files read so far and of all. Raises
+    MotionFileError or ActorError; then nothing was stored.
     """
     check_name(name, library, replace)
     description = read_description(folder)
-    walks = read_walks(folder)
+    walks = read_walks(folder, told)
     check_height(walks, description.height, folder)
     actor = _actor(name, description, walks, description.complete if complete is None else complete)
     _check_delivery(actor, folder)

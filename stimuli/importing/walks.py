@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -68,17 +69,22 @@ class CapturedWalk:
         return self.names == "markers"
 
 
-def read_walks(folder: Path) -> list[CapturedWalk]:
+def read_walks(folder: Path, told: Callable[[int, int], None] | None = None) -> list[CapturedWalk]:
     """The captured walk of every motion file in a folder, in order of name.
 
-    Raises MotionFileError naming the first file that makes no walk, or two files of two people.
+    told: called with the number of files read so far and of all. Raises MotionFileError naming the first file that
+    makes no walk, or two files of two people.
     """
     if not folder.is_dir():
         raise ImportingError(f"{folder} is no folder; give the folder that holds the clips and actor.yaml")
     paths = sorted(path for path in folder.iterdir() if path.suffix.lower() in ENDINGS)
     if not paths:
         raise ImportingError(f"{folder} holds no motion file; they end in {', '.join(ENDINGS)}")
-    walks = [read_walk(path) for path in paths]
+    walks: list[CapturedWalk] = []
+    for path in paths:
+        walks.append(read_walk(path))
+        if told is not None:
+            told(len(walks), len(paths))
     _check_one_person(walks, folder)
     return walks
 

@@ -1,9 +1,7 @@
 """From markers to a walking skeleton: segments scaled to the person, then all markers fitted at once.
 
 The pose of every frame minimises the squared distances of all markers and joint centres from where a skeleton of
-constant bone lengths carries them (global optimisation, Lu & O'Connor, J. Biomech. 32, 1999). Solved segment by
-segment: with all else held, the best rotation of one segment has a closed form (Kabsch, Acta Cryst. A32, 1976), and
-what hangs on it counts as one heavy marker at the next joint. Sweeps repeat until nothing moves.
+constant bone lengths carries them (marker_fitting.py).
 """
 
 from __future__ import annotations
@@ -14,8 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stimuli.clip import Clip
+from stimuli.motion_files import marker_fitting
 from stimuli.motion_files.errors import MotionFileError
 from stimuli.motion_files.joint_centres import joint_centres, pelvis_axes, unit
+from stimuli.motion_files.marker_fitting import Body, fitted, nearest_rotation
 from stimuli.motion_files.markers import MarkerRecording, filled, seen_part
 from stimuli.rotations import continuous, from_matrix, inverse, multiply
 from stimuli.skeleton import JOINTS, PARENTS
@@ -32,10 +32,6 @@ CARRIED = {
     "LowerArm": ("thumb_wrist", "little_wrist"),
     "Hand": ("finger", "little_finger"),
 }
-CENTRE_WEIGHT = 1.0  # a joint centre counts like one marker
-HOLD = 1e-3  # m²: how weakly a segment is held to its first guess, which decides only what no marker tells
-SWEEPS = 30
-STILL = 1e-5  # m: sweeps end when no joint moves more
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,14 +50,12 @@ class MarkerFit:
 
 
 @dataclass(frozen=True, eq=False)
-class _Body:
-    """Joints with their markers. offsets: (J, 3) m; markers[j]: places; local[j]: (m, 3) m in the joint's axes."""
+class _Skeleton:
+    """A body with the names of its joints and, per joint, the places of its markers."""
 
     joints: tuple[str, ...]
-    parents: tuple[int, ...]
-    offsets: Floats
     markers: tuple[tuple[str, ...], ...]
-    local: tuple[Floats, ...]
+    body: Body
 
 
 def markers_to_clip(recording: MarkerRecording) -> Clip:
@@ -75,18 +69,20 @@ def fit_markers(recording: MarkerRecording) -> MarkerFit:
     Needs front and back pelvis markers, lateral knees and ankles, heels and toes (Plug-in-Gait, Schreiber & Moissenet
     and their kin); trunk and arms are added where their markers are. Raises MotionFileError naming what is missing.
     """
-    places = _seen(recording)
-    _check(recording, places)
-    recording = seen_part(recording, [place for place in places if place.endswith(NEEDED)])
-    raw = {place: recording.path_of(place) for place in places}
+    seen = _seen(recording)
+    _check(recording, seen)
+    recording = seen_part(recording, [place for place in seen if place.endswith(NEEDED)])
+    raw = {place: recording.path_of(place) for place in seen}
     paths = {place: filled(path) for place, path in raw.items()}
     centres = joint_centres(paths)
     joints = tuple(joint for joint in JOINTS if joint in centres)
     guess = _first_guess(paths, centres, joints)
-    body = _body(joints, centres, paths, guess)
-    rotations, root = _solve(body, raw, centres, guess)
-    clip = _clip(recording, body, rotations, root)
-    return _judged(clip, body, raw, centres, rotations, root)
+    skeleton = _skeleton(joints, centres, paths, guess)
+    targets = [np.stack([raw[place] for place in own], axis=1) if own else None for own in skeleton.markers]
+    wanted = [np.stack([of[joint] for joint in joints], axis=1) for of in (centres, guess)]
+    rotations, root = fitted(skeleton.body, targets, wanted[0], wanted[1])
+    clip = _clip(recording, skeleton, rotations, root)
+    return _judged(clip, skeleton, raw, centres, rotations, root)
 
 
 def _seen(recording: MarkerRecording) -> list[str]:
@@ -167,21 +163,13 @@ def _foot_axes(paths: dict[str, Floats], side: str, left: Floats) -> Floats:
     still = speed <= np.quantile(speed, 0.15)
     ahead = forward[still] * [1.0, 0.0, 1.0]
     level = _axes(np.tile([0.0, 1.0, 0.0], (int(still.sum()), 1)), np.cross([0.0, 1.0, 0.0], ahead))
-    correction = _nearest_rotation(np.mean(np.swapaxes(axes[still], -1, -2) @ level, axis=0))
+    correction = nearest_rotation(np.mean(np.swapaxes(axes[still], -1, -2) @ level, axis=0))
     return axes @ correction
 
 
-def _nearest_rotation(matrices: Floats) -> Floats:
-    """(..., 3, 3) the rotations nearest to matrices in the least squares sense."""
-    u, _, v = np.linalg.svd(matrices)
-    u = u.copy()
-    u[..., :, 2] *= np.where(np.linalg.det(u @ v) < 0, -1.0, 1.0)[..., None]
-    return u @ v
-
-
-def _body(
+def _skeleton(
     joints: tuple[str, ...], centres: dict[str, Floats], paths: dict[str, Floats], guess: dict[str, Floats]
-) -> _Body:
+) -> _Skeleton:
     """Offsets and marker places as their means over all frames, seen from the first guess of the axes."""
     parents = _parents(joints)
     offsets = np.zeros((len(joints), 3))
@@ -194,7 +182,7 @@ def _body(
         np.array([_seen_from(paths[place], centres[joint], guess[joint]) for place in own]).reshape(-1, 3)
         for joint, own in zip(joints, markers, strict=True)
     )
-    return _Body(joints, parents, offsets, markers, local)
+    return _Skeleton(joints, markers, Body(parents, offsets, local))
 
 
 def _seen_from(points: Floats, origin: Floats, axes: Floats) -> Floats:
@@ -216,86 +204,8 @@ def _markers_of(joint: str, paths: dict[str, Floats], joints: tuple[str, ...]) -
     return tuple(place for place in own if place in paths)
 
 
-def _solve(
-    body: _Body, raw: dict[str, Floats], centres: dict[str, Floats], guess: dict[str, Floats]
-) -> tuple[Floats, Floats]:
-    """World rotations (T, J, 3, 3) and the root's path (T, 3) m."""
-    rotations = np.stack([guess[joint] for joint in body.joints], axis=1)
-    root = np.array(centres["hips"])
-    targets = [np.stack([raw[place] for place in own], axis=1) if own else None for own in body.markers]
-    places = _places(body, rotations, root)
-    for _ in range(SWEEPS):
-        for joint in reversed(range(len(body.joints))):
-            rotations[:, joint] = _best_rotation(body, joint, rotations, places, targets, centres, guess)
-            places = _places(body, rotations, root)
-        pull, weight = _pulls(body, 0, rotations, places, targets, centres)
-        root = root + pull / np.maximum(weight, 1e-9)[:, None]
-        before, places = places, _places(body, rotations, root)
-        if np.max(np.abs(places - before)) < STILL:
-            break
-    return rotations, root
-
-
-def _places(body: _Body, rotations: Floats, root: Floats) -> Floats:
-    """(T, J, 3) m: joints by forward kinematics."""
-    places = np.empty((len(root), len(body.joints), 3))
-    for joint, parent in enumerate(body.parents):
-        places[:, joint] = root if parent < 0 else places[:, parent] + rotations[:, parent] @ body.offsets[joint]
-    return places
-
-
-def _own_residuals(
-    body: _Body, joint: int, rotations: Floats, places: Floats, targets: list[Floats | None], centres: dict[str, Floats]
-) -> tuple[Floats, Floats]:
-    """Sum (T, 3) of target minus place over a joint's own markers and its centre, and the sum (T,) of weights."""
-    pull = CENTRE_WEIGHT * (centres[body.joints[joint]] - places[:, joint])
-    weight = np.full(len(pull), CENTRE_WEIGHT)
-    target = targets[joint]
-    if target is not None:
-        there = places[:, joint, None] + np.einsum("tij,mj->tmi", rotations[:, joint], body.local[joint])
-        seen = np.asarray(np.all(np.isfinite(target), axis=-1))
-        pull = pull + np.sum(np.where(seen[..., None], target - there, 0.0), axis=1)
-        weight = weight + seen.sum(axis=1)
-    return pull, weight
-
-
-def _pulls(
-    body: _Body, joint: int, rotations: Floats, places: Floats, targets: list[Floats | None], centres: dict[str, Floats]
-) -> tuple[Floats, Floats]:
-    """The same over a joint and all that hangs on it."""
-    pull, weight = _own_residuals(body, joint, rotations, places, targets, centres)
-    for child, parent in enumerate(body.parents):
-        if parent == joint:
-            more, heavier = _pulls(body, child, rotations, places, targets, centres)
-            pull, weight = pull + more, weight + heavier
-    return pull, weight
-
-
-def _best_rotation(
-    body: _Body,
-    joint: int,
-    rotations: Floats,
-    places: Floats,
-    targets: list[Floats | None],
-    centres: dict[str, Floats],
-    guess: dict[str, Floats],
-) -> Floats:
-    """(T, 3, 3): the rotation of one joint that fits its markers and carries its children best."""
-    covariance = HOLD * guess[body.joints[joint]]
-    target = targets[joint]
-    if target is not None:
-        seen = np.asarray(np.all(np.isfinite(target), axis=-1))
-        arms = np.where(seen[..., None], target - places[:, joint, None], 0.0)
-        covariance = covariance + np.einsum("tmi,mj->tij", arms, body.local[joint])
-    for child, parent in enumerate(body.parents):
-        if parent == joint:
-            pull, weight = _pulls(body, child, rotations, places, targets, centres)
-            arm = weight[:, None] * (places[:, child] - places[:, joint]) + pull
-            covariance = covariance + arm[:, :, None] * body.offsets[child]
-    return _nearest_rotation(covariance)
-
-
-def _clip(recording: MarkerRecording, body: _Body, rotations: Floats, root: Floats) -> Clip:
+def _clip(recording: MarkerRecording, skeleton: _Skeleton, rotations: Floats, root: Floats) -> Clip:
+    body, joints = skeleton.body, skeleton.joints
     world = from_matrix(rotations)
     local = np.array(world)
     for joint, parent in enumerate(body.parents):
@@ -305,13 +215,13 @@ def _clip(recording: MarkerRecording, body: _Body, rotations: Floats, root: Floa
     translations[:, 0] = root
     return Clip(
         name=recording.name,
-        joints=body.joints,
+        joints=joints,
         parents=body.parents,
         offsets=body.offsets,
         translations=translations,
         rotations=continuous(local),
         rate=recording.rate,
-        roles={joint: index for index, joint in enumerate(body.joints)},
+        roles={joint: index for index, joint in enumerate(joints)},
         source=replace(recording.source, names="markers"),
         warnings=recording.warnings,
         events=recording.events,
@@ -320,21 +230,21 @@ def _clip(recording: MarkerRecording, body: _Body, rotations: Floats, root: Floa
 
 
 def _judged(
-    clip: Clip, body: _Body, raw: dict[str, Floats], centres: dict[str, Floats], rotations: Floats, root: Floats
+    clip: Clip, skeleton: _Skeleton, raw: dict[str, Floats], centres: dict[str, Floats], rotations: Floats, root: Floats
 ) -> MarkerFit:
-    places = _places(body, rotations, root)
+    there = marker_fitting.places(skeleton.body, rotations, root)
     squares: dict[str, Floats] = {}
-    for joint, own in enumerate(body.markers):
-        for place, local in zip(own, body.local[joint], strict=True):
-            there = places[:, joint] + rotations[:, joint] @ local
-            distance = np.sum((raw[place] - there) ** 2, axis=-1)
+    for joint, own in enumerate(skeleton.markers):
+        for place, local in zip(own, skeleton.body.local[joint], strict=True):
+            marker = there[:, joint] + rotations[:, joint] @ local
+            distance = np.sum((raw[place] - marker) ** 2, axis=-1)
             squares[place] = distance[np.isfinite(distance)]
     return MarkerFit(
         clip=clip,
         residual=float(np.sqrt(np.mean(np.concatenate(list(squares.values()))))),
         marker_residuals={place: float(np.sqrt(np.mean(s))) for place, s in squares.items()},
         centre_distances={
-            joint: float(np.linalg.norm(centres[joint] - places[:, index], axis=-1).max())
-            for index, joint in enumerate(body.joints)
+            joint: float(np.linalg.norm(centres[joint] - there[:, index], axis=-1).max())
+            for index, joint in enumerate(skeleton.joints)
         },
     )

@@ -12,6 +12,7 @@ import time
 from itertools import product
 from pathlib import Path
 
+from tests.benchmarks.importing import importing
 from tests.benchmarks.measuring import fastest, machine, row
 from tests.benchmarks.methods import methods
 from tests.benchmarks.poses import poses
@@ -82,7 +83,7 @@ def help_text() -> None:
 def main() -> None:
     """Prints the machine and every figure."""
     print(machine())
-    for benchmark in (help_text, poses, methods, frame, simulation, analysis_of_the_thesis):
+    for benchmark in (help_text, poses, methods, importing, frame, simulation, analysis_of_the_thesis):
         benchmark()
 
 

@@ -4,7 +4,6 @@ import csv
 import json
 import re
 import shutil
-import time
 from pathlib import Path
 
 import numpy as np
@@ -283,29 +282,6 @@ def refused(folder: Path, library: Path, names: str, reason: str) -> None:
 def test_a_mistake_in_actor_yaml_is_one_sentence(tmp_path, changes, reason):
     with pytest.raises(ImportingError, match=reason):
         read_description(described(tmp_path / "in", **changes))
-
-
-@needs_captures
-@pytest.mark.slow
-def test_twenty_five_clips_of_ten_seconds_are_imported_and_the_time_is_printed(tmp_path):
-    """The limit is 5 s on the project's two cores; a loaded machine is no fault of the code, so it is only printed."""
-    folder = described(tmp_path / "in", height=1.70)
-    head, motion = (CMU / "cmu_16_15.bvh").read_text().split("MOTION")
-    lines = motion.strip().splitlines()
-    rows = np.array([[float(value) for value in line.split()] for line in lines[2:]])
-    walk = read_walk(CMU / "cmu_16_15.bvh")
-    first, last = walk.frames
-    travel = (rows[last, :3] - rows[first, :3]) * (1.0, 0.0, 1.0)
-    strides = [rows[first:last].copy() for _ in range(1200 // (last - first) + 1)]
-    for index, stride in enumerate(strides):
-        stride[:, :3] += index * travel
-    body = "\n".join(" ".join(f"{value:.4f}" for value in row) for row in np.concatenate(strides)[:1200])
-    for index in range(25):
-        (folder / f"w{index}.bvh").write_text(f"{head}MOTION\nFrames: 1200\nFrame Time: .0083333\n{body}\n")
-    began = time.perf_counter()
-    actor = import_folder(folder, "many", tmp_path / "library", complete=True)
-    print(f"25 clips of 10 s imported in {time.perf_counter() - began:.1f} s (limit 5 s)")
-    assert len({file for cycle in actor.cycles for file in cycle.files}) == 25
 
 
 def test_an_import_never_writes_over_an_actor_unless_told(tmp_path):
