@@ -30,21 +30,25 @@ SHADOW_NAMES = ("position", "weights", "joints")
 MOST_MATERIALS = 24  # as in walker.frag.glsl
 MOST_KEPT = 48  # levels of bodies kept on the GPU, about 1 MB each
 
-FINISHES: dict[str, tuple[float, float, float]] = {
-    "skin": (1.0, 0.10, 0.75),
-    "lip": (0.8, 0.05, 1.0),
-    "eye": (0.0, 0.0, 1.0),
-    "iris": (0.0, 0.0, 1.0),
-    "pupil": (0.0, 0.0, 1.0),
-    "hair": (0.0, 0.22, 0.45),
-    "brow": (0.0, 0.0, 0.2),
-    "lash": (0.0, 0.0, 0.0),
-    "shoes": (0.0, 0.05, 0.8),
-    "soles": (0.0, 0.0, 0.3),
-}
-"""Material name -> how much it is skin, fuzz that lights up at grazing angles, strength of its highlight."""
+KNITTED, WOVEN, SKIN, HAIR = 1.0, 2.0, 3.0, 4.0  # fabrics of fabric.glsl
 
-CLOTH = (0.0, 0.16, 0.15)
+FINISHES: dict[str, tuple[float, float, float, float]] = {
+    "skin": (1.0, 0.10, 0.75, SKIN),
+    "lip": (0.8, 0.05, 1.0, 0.0),
+    "eye": (0.0, 0.0, 1.0, 0.0),
+    "iris": (0.0, 0.0, 1.0, 0.0),
+    "pupil": (0.0, 0.0, 1.0, 0.0),
+    "hair": (0.0, 0.22, 0.45, HAIR),
+    "brow": (0.0, 0.0, 0.2, 0.0),
+    "lash": (0.0, 0.0, 0.0, 0.0),
+    "shirt": (0.0, 0.16, 0.15, KNITTED),
+    "trousers": (0.0, 0.16, 0.15, WOVEN),
+    "shoes": (0.0, 0.05, 0.8, 0.0),
+    "soles": (0.0, 0.0, 0.3, 0.0),
+}
+"""Material name -> how much it is skin, fuzz that lights up at grazing angles, strength of its highlight, fabric."""
+
+CLOTH = (0.0, 0.16, 0.15, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +128,7 @@ def finishes_of(names: Sequence[str]) -> bytes:
     """Finishes (24, 4) of materials with these names as float32 bytes."""
     finishes = np.zeros((MOST_MATERIALS, 4), np.float32)
     for row, name in enumerate(names):
-        finishes[row, :3] = FINISHES.get(name, CLOTH)
+        finishes[row] = FINISHES.get(name, CLOTH)
     return finishes.tobytes()
 
 

@@ -24,11 +24,12 @@ LEVEL_HEIGHTS = (400.0, 120.0)  # pixels of stature below which a coarser level 
 
 @dataclass(frozen=True, eq=False)
 class Batch:
-    """Walkers of one body and level, in consecutive rows of the poses texture."""
+    """Walkers of one body and level of detail, in consecutive rows of the poses texture."""
 
     body: BodyOnGpu
     first: int
     count: int
+    level: int
 
 
 def level_of(stature_pixels: float, levels: int) -> int:
@@ -88,7 +89,7 @@ class WalkersPass:
             self._rows[row, :-1] = walker.matrices.reshape(-1, 4)
             self._rows[row, -1] = (*walker.place, number)
             if row + 1 == len(keyed) or keyed[row + 1][:2] != (body, level):
-                self._batches.append(Batch(self.bodies.get(walker.body, level), first, row + 1 - first))
+                self._batches.append(Batch(self.bodies.get(walker.body, level), first, row + 1 - first, level))
                 first = row + 1
         assert self._texture is not None
         if keyed:
@@ -146,6 +147,7 @@ class WalkersPass:
         set_if_used(program, "first_walker", batch.first)
         set_if_used(program, "colours", batch.body.colours)
         set_if_used(program, "finishes", batch.body.finishes)
+        set_if_used(program, "close_up", 1.0 if batch.level == 0 else 0.0)
         batch.body.lit.render(moderngl.TRIANGLES, instances=batch.count)
 
     def _textured_program(self) -> moderngl.Program:

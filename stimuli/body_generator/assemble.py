@@ -148,8 +148,8 @@ def hair_pieces(name: str, figure: Figure, everything: Field, coarseness: float 
 def _grained(normals: Floats, shade: Floats) -> tuple[Floats, Floats]:
     """Normals and shade of clipped hair: uneven from vertex to vertex, so that it does not shine like a cap."""
     rng = np.random.default_rng(8)
-    uneven = normals + rng.normal(0, 0.28, normals.shape)
-    return uneven / np.linalg.norm(uneven, axis=1, keepdims=True), shade * rng.uniform(0.6, 1.0, len(shade))
+    uneven = normals + rng.normal(0, 0.10, normals.shape)
+    return uneven / np.linalg.norm(uneven, axis=1, keepdims=True), shade * rng.uniform(0.84, 1.0, len(shade))
 
 
 def gathered(figure: Figure, levels: list[list[Piece]], heat: Heat) -> Body:

@@ -39,13 +39,19 @@ def shirt_folds(figure: Figure, cloth: Field) -> Field:
 
 
 def trouser_folds(figure: Figure, cloth: Field) -> Field:
-    """Folds of trousers: from the crotch, behind and above the knee, stacked above the shoe."""
+    """Folds of trousers: from the crotch, over the thigh, round the knee, stacked above the shoe; pockets and fly."""
     rng = np.random.default_rng(SEED + 1)
     strength = 1.0 if figure.female else 1.35
     folds: list[Fold] = []
     for side in (1, -1):
-        for curve, width, height in [*_crotch(figure, side), *_knee(figure, side), *_break(figure, side, rng)]:
+        for curve, width, height in [
+            *_crotch(figure, side),
+            *_thigh(figure, side),
+            *_knee(figure, side),
+            *_break(figure, side, rng),
+        ]:
             folds.append(_uneven(curve, width, strength * height, 0.6, rng))
+        folds += [Fold(*curve, width, height) for curve, width, height in _seams(figure, side)]
     return folded(cloth, folds)
 
 
@@ -129,22 +135,54 @@ def _on_leg(figure: Figure, side: int, y: float, turn: float, radius: float) -> 
 
 
 def _crotch(figure: Figure, side: int) -> list[tuple[Curve, float, float]]:
+    """Pulls from the crotch over the thigh and under the buttock; they begin beside the seam, where cloth is held."""
     thick = 0.86 if figure.female else 1.0
     y, half = figure.hip[1] - 8, np.pi
     on = lambda up, turn, radius: _on_leg(figure, side, y + up, turn, radius * thick)  # noqa: E731
     found: list[tuple[Curve, float, float]] = []
-    for spread, drop in ((0.5, -3.0), (1.0, -7.0), (1.5, -12.0)):
+    for spread, drop in ((0.35, 5.0), (0.6, 1.0), (0.95, -4.5), (1.2, -10.0)):
         front = (
-            on(0, half - 0.5, 8),
-            on(1.5 + 0.4 * drop, half - 1.2, 9),
-            on(4 + drop, half - 1.2 - spread, 9.3),
+            on(0.15 * drop - 1.0, half - 1.0, 9.0),
+            on(1.0 + 0.5 * drop, half - 1.35, 9.6),
+            on(2.5 + drop, half - 1.35 - spread, 9.8),
         )
+        found.append((front, 1.15, 0.42))
+    for spread, drop in ((0.5, -3.0), (1.0, -7.0), (1.5, -12.0)):
         back = (
-            on(0, half + 0.5, 8),
+            on(0, half + 0.7, 8),
             on(0.6 * drop, half + 1.2, 9.5),
             on(2 + drop, half + 1.4 + 0.6 * spread, 10),
         )
-        found += [(front, 1.3, 0.5), (back, 1.3, 0.5)]
+        found.append((back, 1.3, 0.5))
+    return found
+
+
+def _thigh(figure: Figure, side: int) -> list[tuple[Curve, float, float]]:
+    """Slanting pulls between hip and knee, front and back."""
+    radius = 7.6 if figure.female else 8.6
+    top, low = figure.hip[1] - 16, figure.knee[1] + 9
+    found: list[tuple[Curve, float, float]] = []
+    for share, turn, lean in (
+        (0.05, 1.9, 4.0),
+        (0.35, 1.25, -4.5),
+        (0.62, 1.8, 3.5),
+        (0.3, -1.3, 4.0),
+        (0.7, -1.8, -3.5),
+    ):
+        y = top + share * (low - top)
+        on = lambda rise, at, y=y: _on_leg(figure, side, y + rise, at, radius)  # noqa: E731
+        found.append(((on(lean, turn - 0.75), on(0.3 * lean, turn), on(-lean, turn + 0.75)), 1.3, 0.36))
+    return found
+
+
+def _seams(figure: Figure, side: int) -> list[tuple[Curve, float, float]]:
+    """The welt of a slanting front pocket; and once, left of the middle, the fly."""
+    y = figure.shirt[0][0]
+    on = lambda up, turn: _on_leg(figure, side, y + up, turn, 10.5)  # noqa: E731
+    found: list[tuple[Curve, float, float]] = [((on(1.0, 0.95), on(-5.0, 0.62), on(-11.0, 0.12)), 0.55, 0.3)]
+    if side > 0:
+        fly = (_point(1.2, y + 2, 11), _point(1.3, y - 4, 11), _point(0.4, figure.hip[1] - 7.0, 9.5))
+        found.append((fly, 0.6, 0.22))
     return found
 
 
@@ -155,9 +193,9 @@ def _knee(figure: Figure, side: int) -> list[tuple[Curve, float, float]]:
     for k, up in enumerate((7.5, 3.5, -0.5, -4.5)):
         y, lean = figure.knee[1] + up, 1.5 if k % 2 else -1.5
         on = lambda rise, turn, y=y: _on_leg(figure, side, y + rise, turn, radius)  # noqa: E731
-        found.append(((on(lean, -0.5), on(-1.0, -behind), on(-lean, 0.5 - np.pi)), 1.1, 0.55))
-        found.append(((on(2 + lean, 0.1), on(1, 0.6), on(2, 1.15)), 1.1, 0.3))
-        found.append(((on(2 - lean, np.pi - 0.1), on(1, np.pi - 0.6), on(2, np.pi - 1.1)), 1.1, 0.3))
+        found.append(((on(lean, -0.5), on(-1.0, -behind), on(-lean, 0.5 - np.pi)), 1.1, 0.65))
+        found.append(((on(2 + lean, 0.1), on(1, 0.6), on(2, 1.15)), 1.1, 0.42))
+        found.append(((on(2 - lean, np.pi - 0.1), on(1, np.pi - 0.6), on(2, np.pi - 1.1)), 1.1, 0.42))
     return found
 
 

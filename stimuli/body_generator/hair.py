@@ -128,18 +128,18 @@ def _cropped(skull: Field) -> Style:
 def _bob(skull: Field) -> Style:
     """Chin-length hair parted on the left, tucked slightly inwards at its ends."""
     rows = (
-        (152.0, 0, 0, 6.9, 6.9, 7.8, 4.0, 2.2),
-        (154.5, 0, 0, 7.8, 7.8, 9.0, 5.0, 2.2),
-        (157.5, 0, 0, 8.4, 8.4, 10.2, 6.0, 2.2),
-        (161.5, 0, 0, 8.75, 8.75, 11.1, 7.5, 2.2),
-        (165.5, 0, 0, 8.7, 8.7, 11.4, 8.5, 2.2),
-        (168.0, 0, 0, 8.3, 8.3, 11.0, 8.5, 2.2),
+        (152.0, 0, 0, 6.7, 6.7, 7.4, 4.0, 2.2),
+        (154.5, 0, 0, 7.4, 7.4, 8.5, 5.0, 2.2),
+        (157.5, 0, 0, 8.4, 8.4, 9.8, 6.0, 2.2),
+        (161.5, 0, 0, 9.05, 9.05, 10.8, 7.5, 2.2),
+        (165.5, 0, 0, 8.6, 8.6, 10.9, 8.5, 2.2),
+        (168.0, 0, 0, 8.0, 8.0, 10.6, 8.5, 2.2),
     )
     curtain = generalised_cylinder((0, 0, 0), (0, 1, 0), (1, 0, 0), rows, rounding=1.5)
 
     def crown(p: Floats) -> Floats:
         parting = np.exp(-(((p[:, 0] - 2.6) / 0.55) ** 2)) * (p[:, 2] > -4) * (p[:, 1] > 168)
-        return skull(p) - 1.15 + 0.65 * parting
+        return skull(p) - 0.9 + 0.55 * parting
 
     volume = join(crown, (curtain, 2.0))
     opening = join(

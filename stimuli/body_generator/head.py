@@ -48,7 +48,8 @@ _SECTIONS_MAN = (
     (174.4, 0, 0, 3.1, 3.1, 4.3, 3.4, 2.0),
     (174.95, 0, 0, 1.0, 1.0, 1.4, 1.1, 2.0),
 )
-_JAW_WOMAN = {151.8: 0.80, 152.6: 0.80, 153.8: 0.84, 155.5: 0.88, 157.2: 0.92, 159.2: 0.95, 161.2: 0.98}
+_JAW_MAN = {153.8: 0.96, 155.5: 0.95, 157.2: 0.95, 159.2: 0.965, 161.2: 0.98}
+_JAW_WOMAN = {151.8: 0.76, 152.6: 0.76, 153.8: 0.80, 155.5: 0.84, 157.2: 0.88, 159.2: 0.925, 161.2: 0.965}
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,7 @@ def _sections(female: bool) -> Field:
     rows = [
         (y, 0, 0, a * k, b * k, max(back, 0.4), front - (0.25 if female and y > 164 else 0.0), n)
         for y, _, _, a, b, back, front, n in _SECTIONS_MAN
-        for k in (_JAW_WOMAN.get(y, 1.0) if female else 1.0,)
+        for k in ((_JAW_WOMAN if female else _JAW_MAN).get(y, 1.0),)
     ]
     return generalised_cylinder((0, 0, 0), (0, 1, 0), (1, 0, 0), rows, rounding=0.8)
 

@@ -21,7 +21,7 @@ MAN = Figure(
     foot_scale=1.0,
     hand_scale=1.0,
     head_scale=1.0,
-    neck_radius=5.9,
+    neck_radius=5.5,
     # height; 0, centre back; half breadth twice; back, front; exponent
     shirt=(
         (86.0, 0, 0.0, 18.3, 18.3, 13.7, 12.4, 2.3),

@@ -6,6 +6,10 @@
 #ifdef FADED
 #include "dither.glsl"
 #endif
+#ifndef CROWD
+#include "fabric.glsl"
+in vec3 bind_place;  // m, where on the body
+#endif
 
 const int MOST_MATERIALS = 24;
 #ifdef CROWD
@@ -15,7 +19,7 @@ flat in vec2 drawn_in;
 #else
 uniform vec4 colours[MOST_MATERIALS];   // linear rgb, roughness
 #endif
-uniform vec4 finishes[MOST_MATERIALS];  // skin, sheen, specular strength, unused
+uniform vec4 finishes[MOST_MATERIALS];  // skin, sheen, specular strength, fabric
 
 in vec3 world_position;
 in vec3 world_normal;
@@ -74,6 +78,9 @@ void main() {
 
     vec3 to_eye = normalize(eye - world_position);
     vec3 normal = normalize(world_normal);
+#ifndef CROWD
+    normal = fabric(finish.w, bind_place, world_position, normal, albedo);
+#endif
 #ifdef TEXTURED
     if (!gl_FrontFacing) normal = -normal;
 #endif

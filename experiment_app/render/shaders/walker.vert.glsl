@@ -15,6 +15,8 @@ flat out int surface;
 #ifdef CROWD
 flat out int look;
 flat out vec2 drawn_in;     // of the screen's noise
+#else
+out vec3 bind_place;         // m, where on the body in its bind pose
 #endif
 #ifdef TEXTURED
 in vec2 picture_at;
@@ -35,6 +37,8 @@ void main() {
     vec4 instance = texelFetch(instances, ivec2(first_walker + gl_InstanceID, 0), 0);
     look = int(instance.w + 0.5);
     drawn_in = instance.yz;
+#else
+    bind_place = position;
 #endif
 #ifdef TEXTURED
     picture_place = picture_at;
