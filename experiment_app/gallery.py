@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import product
 from pathlib import Path
+from random import Random
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +27,7 @@ from stimuli.skeleton import JOINTS
 Pixels = NDArray[np.uint8]
 TILE = (400, 450)
 WIDE = (1200, 675)
+HALF = (600, 400)
 SMALL = (240, 340)
 CLOSE = Camera("three_quarter", 5.0, 1.3, 24.0)
 PHASES = (0.02, 0.18, 0.34, 0.5)
@@ -57,7 +61,9 @@ def make_gallery(folder: Path) -> Iterator[Path]:
             f"{body}-walking.png", [_one(actor, phase, camera=Camera("side", 4.6, 1.2, 26.0)) for phase in PHASES]
         )
     yield row("representations.png", [_one("F1", 0.2, body=name, marks=Marks(dot_size=0.3)) for name in FIGURES])
-    yield row("treadmill.png", [_treadmill()], WIDE)
+    yield row("treadmill.png", list(_treadmill()), HALF)
+    yield row("pair.png", [_pair()], WIDE)
+    yield row("street.png", list(_street()), HALF)
     bodies = (*shipped_names(), *imported_names())
     yield row("bodies.png", [_one("M1", 0.2, body=name) for name in bodies[:6]])
     yield row("levels.png", [_one("F1", 0.2, lod=level) for level in (0, 1, 2)])
@@ -98,8 +104,29 @@ def _styled(style: str | None) -> Scene:
     return Scene((walker,), CLOSE, caption=(style or "his own").replace("_", " "))
 
 
-def _treadmill() -> Scene:
-    return Scene((Walker("M1", 1.2, 105.0, 0.1),), Camera("side", 4.5, 1.2, 30.0), "treadmill")
+def _treadmill() -> Iterator[Scene]:
+    for actor, camera in (("M1", Camera("side", 4.6, 1.2, 30.0)), ("F1", Camera("three_quarter", 5.0, 1.6, 30.0))):
+        yield replace(_one(actor, 0.1, camera=camera), ground="treadmill")
+
+
+def _pair() -> Scene:
+    """Two walkers to compare, as a participant sees them."""
+    camera = Camera("three_quarter", 5.5, 1.5, 24.0)
+    other = _one("M2", 0.56, camera=camera)
+    return replace(_one("F2", 0.06, camera=camera), beside=other, caption="Which walk looks more natural?")
+
+
+def _street() -> Iterator[Scene]:
+    """Somebody who comes towards the viewer, and thirty people from above."""
+    approaching = Walker("F4", 1.2, 105.0, 0.1, place=(0.4, -7.5))
+    yield Scene((approaching,), Camera("first_person", height=1.62, field_of_view=45.0, place=(0.0, 0.0)), "street")
+    rng = Random("thirty people")
+    walkers = []
+    for x, z in product(range(5), range(6)):
+        place = (2.4 * (x - 2) + rng.uniform(-0.7, 0.7), 3.0 * (z - 3) + rng.uniform(-0.9, 0.9))
+        actor = rng.choice(("F1", "F2", "F3", "F5", "M1", "M2", "M4", "M6"))
+        walkers.append(Walker(actor, 1.2, rng.uniform(98.0, 112.0), rng.random(), place=place))
+    yield Scene(tuple(walkers), Camera("elevated", 17.0, 8.0, 32.0, heading=160.0), "street")
 
 
 def _parts(path: Path) -> Path:
