@@ -9,7 +9,10 @@ import json
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any
+from functools import cache
+from typing import Any, get_args
+
+from pydantic import TypeAdapter, ValidationError
 
 from protocols.study import Level
 
@@ -281,9 +284,32 @@ def decode_line(line: str) -> dict[str, Any]:
         raise DamagedLineError("the line does not match its checksum; it was altered or cut off")
     try:
         values = json.loads(text)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise DamagedLineError(f"the line is not JSON: {error}") from None
+    _check_shape(values, text)
     return dict(values)
+
+
+def _check_shape(values: Any, text: str) -> None:
+    """Raises DamagedLineError when a line of a kind that is known here lacks a member, or one has another type.
+
+    Members and kinds that later versions may add are welcome.
+    """
+    kind = values.get("kind") if isinstance(values, dict) else None
+    if not isinstance(kind, str):
+        raise DamagedLineError("the line has no kind")
+    if kind in _kinds():
+        try:
+            _kinds()[kind].validate_json(text, strict=True)
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            where = ".".join(map(str, first["loc"]))
+            raise DamagedLineError(f"the {kind} line is not what gaitlab writes: {where}: {first['msg']}") from None
+
+
+@cache
+def _kinds() -> dict[str, TypeAdapter[Any]]:
+    return {record.kind: TypeAdapter(record) for record in get_args(Record)}
 
 
 def _checksum(text: str) -> str:

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import difflib
 import hashlib
-from collections.abc import Iterable, Sequence
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from io import StringIO
@@ -22,6 +23,9 @@ from protocols.setting import CONSTANT, FACTOR, TABLE
 from protocols.study import Study
 
 MISSING = "this key is missing"
+
+MOST_VALUES = 100_000
+"""Values a study file may hold once its aliases are written out; the longest studies have some thousands."""
 
 
 class StudyFileError(ValueError):
@@ -103,7 +107,12 @@ def parse_study(name: str, text: str) -> StudyFile:
         message = f"the file is {found}; a study file holds keys such as study, participants, factors, task"
         raise StudyFileError(name, [Mistake((), message)])
     try:
-        study = Study.model_validate(_plain(document))
+        plain = _plain(document, itertools.count(1))
+    except (OverflowError, RecursionError):
+        message = f"aliases (*) make the file larger than {MOST_VALUES} values, or endless; write out what is meant"
+        raise StudyFileError(name, [Mistake((), message)]) from None
+    try:
+        study = Study.model_validate(plain)
     except ValidationError as error:
         mistakes = _without_echoes([_explain(e, document) for e in error.errors(include_url=False)])
         raise StudyFileError(name, [_placed(document, m) for m in mistakes]) from None
@@ -121,7 +130,7 @@ def _load_yaml(name: str, text: str) -> Any:
         line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
         problem = _yaml_problem(error)
         raise StudyFileError(name, [Mistake((), problem, line=line, column=column)]) from None
-    except (YAMLError, ValueError, RecursionError) as error:
+    except (YAMLError, ValueError, TypeError, RecursionError) as error:  # TypeError: a mapping as a key
         reason = str(error).split("\n")[0] or type(error).__name__
         raise StudyFileError(name, [Mistake((), f"not valid YAML: {reason}")]) from None
 
@@ -147,12 +156,17 @@ def _yaml_problem(error: Any) -> str:
     return problem
 
 
-def _plain(node: Any) -> Any:
-    """The YAML tree as plain dict, list and scalars: ruamel's scalar subclasses would fail strict numbers."""
+def _plain(node: Any, count: Iterator[int]) -> Any:
+    """The YAML tree as plain dict, list and scalars: ruamel's scalar subclasses would fail strict numbers.
+
+    count: of values so far. Raises OverflowError beyond MOST_VALUES: a few lines of aliases can mean billions.
+    """
+    if next(count) > MOST_VALUES:
+        raise OverflowError
     if isinstance(node, dict):
-        return {_plain(key): _plain(value) for key, value in node.items()}
+        return {_plain(key, count): _plain(value, count) for key, value in node.items()}
     if isinstance(node, list):
-        return [_plain(value) for value in node]
+        return [_plain(value, count) for value in node]
     for kind in (bool, int, float, str):
         if isinstance(node, kind):
             return kind(node)

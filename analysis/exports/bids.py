@@ -86,7 +86,7 @@ def _run_files(run: ExportedRun) -> Iterator[tuple[str, bytes]]:
     frames = tables.frames(run)
     if frames.rows and "time" in frames.columns:
         frames = _as_bids(frames, ("participant", "run"))
-        rate = round(1.0 / float(run.header["display"].get("period_s") or 1.0 / 60.0), 6)
+        rate = round(1.0 / float(run.of(*tables.FRAME_RECORDS)[0].record["period"]), 6)
         text = (
             "One row a frame, seen at `time`: SamplingFrequency is the display's refresh rate, and frames may be late."
         )

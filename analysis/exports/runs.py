@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
@@ -103,6 +104,8 @@ def read_runs(folder: Path) -> tuple[list[ExportedRun], list[str]]:
 def _read(path: Path, name: str) -> ExportedRun:
     records, torn = read_records(path, name)
     header = records[0]
+    if not re.fullmatch(r"[A-Za-z0-9]+", str(header["participant"])):
+        raise AnalysisError(f"{name}: {header['participant']!r} is no participant's code (letters and digits only).")
     try:
         timed = tuple(_timed(records))
         return ExportedRun(

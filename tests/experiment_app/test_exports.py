@@ -312,13 +312,13 @@ def test_responses_of_any_task_and_records_of_later_versions_are_exported_as_the
     for line in journal.read_text(encoding="utf-8").rstrip("\n").split("\n"):
         values = decode_line(line)
         if values["kind"] == "trial":
-            values["response"] = {"chosen": "second", "correct": True, "original": "first"}
+            values["response"] = {"chosen": "second", "correct": 1, "original": "first"}
         lines.append(_line(values))
     lines.append(_line({"kind": "gaze", "time": 5.0, "part": "head", "samples": [1, 2, 3]}))
     journal.write_text("\n".join(lines) + "\n", encoding="utf-8")
     export(later, "csv", tmp_path / "out")
     rows = [row for row in rows_of(tmp_path / "out/trials.csv") if row["participant"] == "P02"]
-    assert {(row["chosen"], row["correct"], row["step_frequency"]) for row in rows} == {("second", "true", "")}
+    assert {(row["chosen"], row["correct"], row["step_frequency"]) for row in rows} == {("second", "1", "")}
     (gaze,) = [row for row in rows_of(tmp_path / "out/events.csv") if row["event"] == "gaze"]
     assert json.loads(gaze["details"]) == {"part": "head"}
     assert all(psych_ds_problems(p) == [] for p in [_exported(later, tmp_path / "psych")])
