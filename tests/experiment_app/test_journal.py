@@ -4,13 +4,7 @@ from __future__ import annotations
 
 import io
 import os
-import signal
-import subprocess
-import sys
-import time
 from collections import Counter
-from pathlib import Path
-from random import Random
 
 import pytest
 
@@ -18,10 +12,9 @@ from experiment_app.errors import RunError, UsageError
 from experiment_app.journal import append_line
 from experiment_app.opening import open_new, open_unfinished, unfinished_run
 from experiment_app.run_folder import journal_lines, participant_runs
-from protocols.design import conditions
 from protocols.record import Answered
 from tests.experiment_app.sessions import opened, play
-from tests.protocols.studies import shipped_text, short
+from tests.protocols.studies import short
 
 
 def trials(lines) -> list[int]:
@@ -193,74 +186,3 @@ def test_a_run_killed_before_its_header_was_whole_begins_anew_and_keeps_the_scra
     assert run.run.number == 1
     assert (folder / "journal.torn-1").read_bytes() == left
     assert journal_lines(run.run.journal)[0][-2]["reason"] == "finished"
-
-
-CHILD = """
-import sys
-from pathlib import Path
-from tests.experiment_app.sessions import opened, play
-from protocols.study_file import parse_study
-from experiment_app.windows import undrawn
-import os, time
-run = opened(Path(sys.argv[1]), study=parse_study("s.yaml", Path(sys.argv[2]).read_text()))
-acknowledged = open(sys.argv[3], "a")
-wait = run.journal.wait
-def said():
-    wait()
-    stage = run.journal.path.read_bytes().count(b'"kind":"trial"')
-    acknowledged.write(f"{stage}\\n"); acknowledged.flush()
-    time.sleep(0.002)
-run.journal.wait = said
-print("ready", flush=True)
-play(run)
-"""
-
-
-@pytest.mark.slow
-def test_kill_9_at_50_random_moments_loses_no_acknowledged_trial_and_doubles_none(tmp_path):
-    study = tmp_path / "study.yaml"
-    study.write_text(shipped_text(), encoding="utf-8")
-    rng, kills, participant_data = Random(50), 0, tmp_path / "data-0"
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
-    finished = 0
-    while kills < 50:
-        data = tmp_path / f"data-{finished}"
-        said = tmp_path / f"said-{finished}"
-        child = subprocess.Popen(
-            [sys.executable, "-c", CHILD, str(data), str(study), str(said)], stdout=subprocess.PIPE, env=environment
-        )
-        assert child.stdout is not None
-        child.stdout.readline()
-        time.sleep(rng.uniform(0.0, 0.12))
-        child.send_signal(signal.SIGKILL)
-        child.wait()
-        kills += 1
-        acknowledged = int(said.read_text().split("\n")[-2]) if said.exists() and said.read_text().count("\n") else 0
-        run = participant_runs(data, "walk_ratio", "P01")[-1]
-        recorded = [line for line in run.lines if line["kind"] == "trial"]
-        assert len(recorded) >= acknowledged
-        if run.end == "finished":
-            _every_cell_once(run.lines)
-            finished += 1
-    assert participant_data.exists()
-    last = opened(tmp_path / f"data-{finished}", study=short_of(study))
-    play(last)
-    _every_cell_once(journal_lines(last.run.journal)[0])
-
-
-def short_of(path: Path):
-    from protocols.study_file import read_study
-
-    return read_study(str(path))
-
-
-def _every_cell_once(lines) -> None:
-    """All 96 trials, each exactly once, every condition four times."""
-    numbers = trials(lines)
-    assert sorted(numbers) == list(range(1, 97))
-    cells = Counter(
-        tuple(line["factors"].values()) for line in lines if line["kind"] == "trial" and not line["practice"]
-    )
-    assert len(cells) == 24
-    assert set(cells.values()) == {4}
-    assert len(conditions(short().study)) == 4
