@@ -83,6 +83,15 @@ def test_both_four_way_anovas_have_the_effects_of_tables_4_2_and_4_4(report: Pat
     assert anova.loc["actor_sex", "p"] < 0.01
 
 
+@pytest.mark.parametrize("folder", ["", "normalised_walk_ratio/"])
+def test_the_six_pairs_of_table_4_3_are_compared_whatever_the_interaction(report: Path, folder: str) -> None:
+    pairs = table(report, f"{folder}pairs.csv")
+    cells = {"female × matched", "female × mismatched", "male × matched", "male × mismatched"}
+    assert len(pairs) == 6
+    assert {*pairs["a"], *pairs["b"]} == cells
+    assert (pairs["p"] >= pairs["p_unadjusted"]).all()
+
+
 def test_the_effect_of_the_actors_sex_is_that_of_a_paired_t_test(report: Path) -> None:
     """F of a factor of two levels is the square of t, with the participants' group means taken out."""
     trials = table(report, "trials.csv")
