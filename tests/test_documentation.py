@@ -89,6 +89,26 @@ def test_the_orders_of_the_study_file_page_are_orders():
     assert kinds == ["balanced_latin_square", "random", "adaptive"]
 
 
+def test_the_tasks_makings_and_tables_of_the_study_file_page_are_accepted():
+    from pydantic import TypeAdapter
+    from ruamel.yaml import YAML
+
+    from protocols.stimulus import MakingPart, Stimulus
+    from protocols.study import Simulation, Task
+
+    page = blocks(ROOT / "docs" / "study-file.md", "yaml")
+    begun = ("task:", "making:", "speed:", "simulation:")
+    written = [YAML(typ="safe").load(block) for block in page if block.startswith(begun)]
+    tasks = [TypeAdapter(Task).validate_python(part["task"]) for part in written if "task" in part]
+    assert [task.kind for task in tasks] == ["choice", "rating"]
+    (making,) = (MakingPart.model_validate(part["making"]) for part in written if "making" in part)
+    assert making.points == 5
+    (speed,) = (part["speed"] for part in written if "speed" in part)
+    assert Stimulus(actor="$actor", speed=speed).walk({"actor": "F2", "pace": "slow"}).speed == 0.88
+    (simulation,) = (Simulation.model_validate(part["simulation"]) for part in written if "simulation" in part)
+    assert simulation.choice.spread == 0.4
+
+
 def test_every_command_of_the_data_page_runs_in_order(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     commands = [line for block in blocks(ROOT / "docs" / "data.md", "sh") for line in block.splitlines()]
