@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 from typing import Any
 
 import pandas as pd
@@ -66,18 +67,16 @@ def psychometric_tests(used: pd.DataFrame, plan: AnalysisPlan, asked: Psychometr
     """
     data = _answered(used, plan, asked.success, asked.each)
     data["x"] = pd.to_numeric(used.loc[data.index, asked.level], errors="coerce")
-    by = ["participant", *asked.each]
-    for name in asked.each:
-        data[name] = used.loc[data.index, name]
     fits = psychometric(
-        data, "x", "yes", by=by, shape=asked.shape, guess=asked.guess, lapse=asked.lapse, bootstrap=asked.bootstrap,
-        seed=1,
+        data, "x", "yes", by=["participant", "level"], shape=asked.shape, guess=asked.guess, lapse=asked.lapse,
+        bootstrap=asked.bootstrap, seed=1,
     )  # fmt: skip
-    fits.insert(1, "level", cell_labels(fits, asked.each, dict(plan.levels)))
+    if hasattr(data["level"], "cat"):
+        fits["level"] = pd.Categorical(fits["level"], categories=data["level"].cat.categories)
     known = fits[fits["threshold"].notna()]
     if not len(known):
         raise AnalysisError("nobody's answers determine a function; they must rise or fall along the levels.")
-    table = _described(known)
+    table = threshold_rows(known)
     notes = list(fits.attrs.get("notes", []))
     if asked.each:
         table = pd.concat([table, _effects_on_thresholds(known, plan, asked, notes)], ignore_index=True)
@@ -115,17 +114,16 @@ def _tested(person: pd.DataFrame, measure: str, against: float) -> pd.DataFrame:
     return t_tests(person, measure, "participant", each="level", against=against, levels=order)
 
 
-def _described(fits: pd.DataFrame) -> pd.DataFrame:
+def threshold_rows(thresholds: pd.DataFrame) -> pd.DataFrame:
+    """Mean threshold of every level over participants with 95 % limits, and the mean JND if there is a column jnd."""
     rows = []
-    groups = fits.groupby("level", observed=True, sort=True)
-    for level, part in groups:
-        tested = t_tests(part, "threshold", "participant", against=0.0).iloc[0]
-        half = tested["estimate"] - tested["ci_low"]
-        jnd = part["jnd"].abs()
+    for level, part in thresholds.groupby("level", observed=True, sort=True):
+        tested = t_tests(part, "threshold", "participant", against=0.0).iloc[0] if len(part) > 1 else None
+        half = math.nan if tested is None else float(tested["estimate"] - tested["ci_low"])
+        mean, jnd = part["threshold"].mean(), part["jnd"].abs() if "jnd" in part else pd.Series(dtype=float)
         row = {
-            "part": "threshold", "level": str(level), "n": len(part), "mean": part["threshold"].mean(),
-            "sd": part["threshold"].std(ddof=1), "ci_low": part["threshold"].mean() - half,
-            "ci_high": part["threshold"].mean() + half, "jnd": jnd.mean(), "jnd_sd": jnd.std(ddof=1),
+            "part": "threshold", "level": str(level), "n": len(part), "mean": mean, "sd": part["threshold"].std(ddof=1),
+            "ci_low": mean - half, "ci_high": mean + half, "jnd": jnd.mean(), "jnd_sd": jnd.std(ddof=1),
         }  # fmt: skip
         rows.append(row | {"sentence": threshold_sentence(row)})
     return pd.DataFrame(rows)
@@ -134,9 +132,13 @@ def _described(fits: pd.DataFrame) -> pd.DataFrame:
 def _effects_on_thresholds(
     fits: pd.DataFrame, plan: AnalysisPlan, asked: PsychometricPlan, notes: list[str]
 ) -> pd.DataFrame:
+    levels = {name: plan.levels[name] for name in asked.each}
+    cells = {" × ".join(cell): cell for cell in product(*levels.values())}
+    columns = zip(*(cells[str(cell)] for cell in fits["level"]), strict=True)
+    data = pd.DataFrame({"participant": list(fits["participant"]), "threshold": list(fits["threshold"])})
+    data = data.assign(**{name: list(values) for name, values in zip(asked.each, columns, strict=True)})
     try:
-        levels = {name: plan.levels[name] for name in asked.each}
-        table = anova(fits, "threshold", "participant", within=list(asked.each), levels=levels)
+        table = anova(data, "threshold", "participant", within=list(asked.each), levels=levels)
     except AnalysisError as error:
         notes.append(f"The thresholds cannot be compared: {error}")
         return pd.DataFrame()
@@ -161,5 +163,5 @@ def d_prime_sentence(row: dict[str, Any]) -> str:
 def threshold_sentence(row: dict[str, Any]) -> str:
     """'threshold 4.31, 95 % CI [3.9, 4.7], just noticeable difference 1.2 (n = 12)'."""
     limits = f", 95 % CI [{apa.figures(row['ci_low'])}, {apa.figures(row['ci_high'])}]"
-    jnd = f"just noticeable difference {apa.figures(row['jnd'])} (n = {row['n']})"
-    return f"threshold {apa.figures(row['mean'])}{'' if math.isnan(row['ci_low']) else limits}, {jnd}"
+    jnd = "" if math.isnan(row["jnd"]) else f", just noticeable difference {apa.figures(row['jnd'])}"
+    return f"threshold {apa.figures(row['mean'])}{'' if math.isnan(row['ci_low']) else limits}{jnd} (n = {row['n']})"

@@ -25,6 +25,7 @@ from analysis.plan import AnalysisPlan
 from analysis.plan_parts import EquivalencePlan, MixedModelPlan, RankTransformPlan, RegressionPlan
 from analysis.repeated_measures import anova_of_cells
 from analysis.t_statistics import shapiro
+from analysis.track_tests import track_tests
 
 ALPHA = 0.05
 
@@ -41,6 +42,8 @@ def planned_tests(plan: AnalysisPlan) -> Iterator[tuple[str, Callable[[pd.DataFr
         yield "The sensitivity d′", lambda used: d_prime_tests(used, plan, sensitivity)
     if (functions := plan.psychometric) is not None:
         yield "The psychometric functions", lambda used: psychometric_tests(used, plan, functions)
+    if (adaptive := plan.adaptive) is not None:
+        yield "The thresholds of the tracks", lambda used: track_tests(used, plan, adaptive)
     if plan.equivalence:
         yield "The equivalence tests", lambda used: equivalence_tests(used, plan)
     if (cases := plan.regression) is not None:

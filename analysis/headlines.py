@@ -100,14 +100,14 @@ def _of_choices(test: FurtherTest, results: PlannedResults) -> list[str]:
         return [s for (of, by), part in families for s in _comparison(plan.label, "planned pairs", of, by, "", part)]
     if test.kind == "proportions":
         return [s for label, part in test.table.groupby("label", sort=False) for s in _shares(str(label), part)]
-    name = {"d_prime": "Sensitivity", "psychometric": "Psychometric function"}[test.kind]
+    name = {"d_prime": "Sensitivity", "psychometric": "Psychometric function", "adaptive": "Adaptive tracks"}[test.kind]
     heads = [", ".join(filter(None, [name, effect_name(str(row["level"]))])) for row in rows]
     return [f"{head}: {row['sentence']}." for head, row in zip(heads, rows, strict=True)]
 
 
 def _further(test: FurtherTest, results: PlannedResults) -> list[str]:
     plan, table = results.plan, test.table
-    if test.kind in ("comparisons", "pairs", "proportions", "d_prime", "psychometric"):
+    if test.kind in ("comparisons", "pairs", "proportions", "d_prime", "psychometric", "adaptive"):
         return _of_choices(test, results)
     if test.kind == "equivalence":
         found = []

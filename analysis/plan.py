@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from io import StringIO
 from typing import Any
 
 from analysis.columns import label, level_names, numeric_label
 from analysis.errors import AnalysisError, listed
 from analysis.plan_parts import (
+    AdaptivePlan,
     ComparisonPlan,
     DPrimePlan,
     EquivalencePlan,
@@ -65,6 +66,7 @@ class AnalysisPlan:
     proportions: tuple[ProportionsPlan, ...] = field(default=())
     d_prime: DPrimePlan | None = None
     psychometric: PsychometricPlan | None = None
+    adaptive: AdaptivePlan | None = None
     groups: Mapping[str, GroupsPlan] = field(default_factory=dict)  # factors made of groups of another's levels
     also: tuple[AnalysisPlan, ...] = field(default=())  # of further measures
 
@@ -91,6 +93,7 @@ def plan_of(study: Mapping[str, Any], where: str = "study file") -> AnalysisPlan
     shared = {"exclusions": analysis.get("exclusions") or (), "groups": analysis.get("groups") or {}}
     also = tuple(_one_plan(study, {**further, **shared}, (), where) for further in analysis.get("also") or ())
     plan = _one_plan(study, analysis, also, where)
+    plan = replace(plan, adaptive=_adaptive(study.get("order"), study.get("factors") or {}))
     names = [plan.measure, *(further.measure for further in also)]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
@@ -227,6 +230,12 @@ def _comparison(test: Mapping[str, Any]) -> ComparisonPlan:
     against = float(test["against"]) if kind == "against" else None
     label = str(test.get("label", "reference value"))
     return ComparisonPlan(kind, factor, test.get("each"), against, label, test.get("where"))
+
+
+def _adaptive(order: Any, factors: Mapping[str, Any]) -> AdaptivePlan | None:
+    if not isinstance(order, Mapping) or order.get("kind") != "adaptive":
+        return None
+    return AdaptivePlan(order, tuple(float(level) for level in factors.get(str(order.get("of")), ())))
 
 
 def _d_prime(part: Mapping[str, Any] | None) -> DPrimePlan | None:

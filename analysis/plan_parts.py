@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,14 @@ class PsychometricPlan:
     guess: float
     lapse: float | None
     bootstrap: int
+
+
+@dataclass(frozen=True)
+class AdaptivePlan:
+    """The adaptive order of the study file (a plain dict), and the levels of its factor in the order of the file."""
+
+    order: Mapping[str, Any]
+    levels: tuple[float, ...]
 
 
 @dataclass(frozen=True)

@@ -116,7 +116,7 @@ def _tables(results: PlannedResults) -> dict[str, pd.DataFrame]:
     second = {
         "regression": "regression_cases.csv", "aligned_rank_transform": "aligned_rank_contrasts.csv",
         "proportions": "proportions_participants.csv", "d_prime": "d_prime_participants.csv",
-        "psychometric": "psychometric_fits.csv",
+        "psychometric": "psychometric_fits.csv", "adaptive": "adaptive_tracks.csv",
     }  # fmt: skip
     for test in results.further:
         tables[f"{test.kind}.csv"] = test.table

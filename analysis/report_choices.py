@@ -159,6 +159,25 @@ def psychometric_section(test: FurtherTest, results: PlannedResults, plots: Plot
     return section("Psychometric functions", parts, notes, _named(test.table, ("level",)))
 
 
+def adaptive_section(test: FurtherTest, results: PlannedResults, plots: Plots) -> Markup:
+    data = test.table
+    limits = [f"[{apa.figures(a)}, {apa.figures(b)}]" for a, b in zip(data["ci_low"], data["ci_high"], strict=True)]
+    columns: Columns = {
+        **({"level": ("", text)} if data["level"].any() else {}),
+        "n": (element("i", "n"), str_right), "mean": ("threshold", apa.figures), "sd": ("SD", apa.figures),
+        "limits": ("95 % limits", str_right),
+    }  # fmt: skip
+    how = {
+        "quest_plus": "what QUEST+ believes of the threshold in the end (Watson 2017)",
+        "staircase": "the mean level of the reversals without the first two (Levitt 1971)",
+        "weighted": "the mean level of the reversals without the first two (Kaernbach 1991)",
+    }[str(test.more["rule"].iloc[0])]
+    without = int(test.more["threshold"].isna().sum())
+    missing = f" {without} track(s) turned too seldom for one." if without else ""
+    notes = [f"Threshold of a track: {how}; every track is in adaptive_tracks.csv.{missing}", *test.notes]
+    return section("Adaptive tracks", [table(data.assign(limits=limits), columns)], notes, _named(data, ("level",)))
+
+
 def _folded(shown: pd.DataFrame, columns: Columns) -> Markup:
     """A table of tests; a long one to unfold."""
     drawn = table(shown, columns, list(shown["p"] < ALPHA))
@@ -189,5 +208,6 @@ CHOICE_SECTIONS = {
     "proportions": proportions_section,
     "d_prime": d_prime_section,
     "psychometric": psychometric_section,
+    "adaptive": adaptive_section,
 }
 """What writes the section of each of these tests."""

@@ -54,6 +54,7 @@ def _row(run: RecordedRun, trial: dict[str, Any], plan: AnalysisPlan) -> dict[st
     row: dict[str, Any] = {"study": plan.study, "participant": run.participant, "run": run.number}
     row |= {name: value for name, value in run.answers.items() if name not in plan.free_text}
     row |= {"trial": trial["number"], "block": trial.get("block"), "repetition": trial.get("repetition")}
+    row |= {"track": trial["track"]} if trial.get("track") else {}
     row |= {**trial.get("factors", {}), **trial.get("response", {})}
     row |= {name: trial.get(name) for name in COUNTS}
     return row | {f"measured_{name}": value for name, value in trial.get("measured", {}).items()}
@@ -86,7 +87,7 @@ def _columns(rows: list[dict[str, Any]], plan: AnalysisPlan, recorded: RecordedS
     answered = list(dict.fromkeys(name for run in recorded.runs for name in run.answers))
     answers = [name for name in (*plan.questions, *answered) if name in answered and name not in plan.free_text]
     seen = dict.fromkeys(name for row in rows for name in row)
-    first = ["study", "participant", "run", *answers, "trial", "block", "repetition", *plan.factors]
+    first = ["study", "participant", "run", *answers, "trial", "block", "repetition", "track", *plan.factors]
     ordered = list(dict.fromkeys(name for name in first if name in seen))
     response = [n for n in seen if n not in ordered and n not in COUNTS and not n.startswith("measured_")]
     measured = [n for n in seen if n.startswith("measured_") and n not in ordered]

@@ -113,15 +113,16 @@ def what_participant_sees(study: Study, number: int, seed: int | None = None) ->
         lines.append(f"  row {(number - 1) % len(square_rows(study)) + 1} of the square: {shown}")
     lines.append(f"  keys: {', '.join(f'{name} {key}' for name, key in study.task.keys_for(number).items())}")
     if isinstance(order, AdaptiveOrder):
-        lines.append(f"  {order.of} is placed by the answers; shown here is where each track starts")
+        lines.append(f"  {order.of} is placed by the answers, so only the rest is known beforehand")
+    placed = order.of if isinstance(order, AdaptiveOrder) else ""
     blocks = {step.trial.block for step in plan.steps if isinstance(step, TrialStep) and not step.trial.practice}
     block = 0
     for step in plan.steps:
         if isinstance(step, TrialStep):
-            if step.trial.block != block and not step.trial.practice and len(blocks) > 1:
+            if step.trial.block != block and not step.trial.practice and len(blocks) > 1 and not placed:
                 block = step.trial.block
                 lines.append(f"  block {block}")
-            lines.append(f"    {_trial(step)}")
+            lines.append(f"    {_trial(step, placed)}")
         elif isinstance(step, QuestionsStep):
             lines.append(f"  questions: {', '.join(question.id for question in step.questions)}")
         else:
@@ -129,9 +130,11 @@ def what_participant_sees(study: Study, number: int, seed: int | None = None) ->
     return lines
 
 
-def _trial(step: TrialStep) -> str:
+def _trial(step: TrialStep, placed: str) -> str:
+    """One trial in words; placed: the factor whose level only the answers will decide."""
     trial = step.trial
     what = "training" if trial.practice else f"trial {trial.number:>3}"
     track = f"  (track {trial.track})" if trial.track else ""
     order = f"  ({' | '.join(step.order)})" if len(step.order) > 1 else ""
-    return f"{what}: {_named(dict(trial.levels))}{order}{track}"
+    levels = {factor: level for factor, level in trial.levels.items() if trial.practice or factor != placed}
+    return f"{what}: {_named(levels)}{order}{track}"

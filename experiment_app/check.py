@@ -237,8 +237,9 @@ def _strip(study: Study) -> list[str]:
     lines = []
     name = max(10, *map(len, study.factors))
     wide = max(8, *(len(str(level)) for levels in study.factors.values() for level in levels))
+    placed = study.order.of if isinstance(study.order, AdaptiveOrder) else ""
     for factor, levels in study.factors.items():
-        for level in levels:
+        for level in levels if factor != placed else ():
             at = Counter((t.number - 1) * bins // len(trials) for t in trials if t.levels[factor] == level)
             marks = "".join(" .:*#"[min(at[b], 4)] for b in range(bins))
             lines.append(f"  {factor:>{name}} {level!s:<{wide}}|{marks}| {sum(at.values())} trials")

@@ -1,0 +1,70 @@
+"""Thresholds of adaptive tracks, followed by hand from recorded levels and answers."""
+
+from __future__ import annotations
+
+import math
+
+import pandas as pd
+import pytest
+
+from analysis.errors import AnalysisError
+from analysis.plan import plan_of
+from analysis.track_tests import track_tests
+
+STAIRCASE = {"kind": "adaptive", "of": "level", "yes": "correct == 1", "rule": {"kind": "staircase", "down_after": 1}}
+QUEST = {**STAIRCASE, "rule": {"kind": "quest_plus", "spreads": [1.0], "guess": 0.0, "lapses": [0.0]}}
+
+
+def plan(order):
+    return plan_of({
+        "factors": {"actor": ["F1", "M1"], "level": [1, 2, 3, 4, 5]}, "order": order,
+        "analysis": {"measure": "correct", "anova": {"within": ["actor"]}},
+    })  # fmt: skip
+
+
+def trials(levels, answers, who="P01", track=1, actor="F1"):
+    return pd.DataFrame({
+        "participant": who, "track": track, "actor": actor, "trial": range(1, len(levels) + 1), "level": levels,
+        "correct": answers,
+    })  # fmt: skip
+
+
+def test_the_mean_of_the_reversals_without_the_first_two_by_hand():
+    # down after one yes, up after one no: turns at 3, 4, 3, 5, 4, 5; without the first two: 3, 5, 4, 5, mean 4.25
+    levels = [5, 4, 3, 4, 3, 4, 5, 4, 5]
+    answers = [1, 1, 0, 1, 0, 0, 1, 0, 1]
+    asked = plan(STAIRCASE)
+    test = track_tests(trials(levels, answers), asked, asked.adaptive)
+    assert test.more.loc[0, ["rule", "trials", "reversals"]].tolist() == ["staircase", 9, 6]
+    assert test.more.loc[0, "threshold"] == pytest.approx((3 + 5 + 4 + 5) / 4)
+
+
+def test_two_tracks_of_a_participant_are_averaged_before_people_are():
+    asked = plan(QUEST)
+    up, down = [3] * 6, [3] * 6
+    data = pd.concat([
+        trials(up, [1] * 6, "P01", 1), trials(down, [0] * 6, "P01", 2), trials(up, [1] * 6, "P02", 1),
+        trials(up, [1, 0] * 3, "P02", 2), trials(up, [1, 0] * 3, "P01", 3, "M1"),
+        trials(up, [1, 0] * 3, "P02", 3, "M1"),
+    ])  # fmt: skip
+    test = track_tests(data, asked, asked.adaptive)
+    more = test.more.set_index(["participant", "track"])["threshold"]
+    # the levels are symmetric around 3, and so are always yes and always no
+    assert more["P01", 1] + more["P01", 2] == pytest.approx(6.0)
+    assert more["P01", 3] == pytest.approx(3.0, abs=0.1)
+    mean = ((more["P01", 1] + more["P01", 2]) / 2 + (more["P02", 1] + more["P02", 2]) / 2) / 2
+    assert test.table.set_index("level").loc["F1", "mean"] == pytest.approx(mean)
+    assert list(test.table["level"]) == ["F1", "M1"]
+    assert test.table["n"].tolist() == [2, 2]
+
+
+def test_a_track_that_never_turned_has_no_threshold_and_no_track_with_one_is_a_sentence():
+    asked = plan(STAIRCASE)
+    turned = trials([5, 4, 3, 4, 3, 4, 5, 4], [1, 1, 0, 1, 0, 0, 1, 0])
+    straight = trials([5, 4, 3, 2], [1, 1, 1, 1], track=2)
+    test = track_tests(pd.concat([turned, straight]), asked, asked.adaptive)
+    assert math.isnan(test.more.set_index("track").loc[2, "threshold"])
+    with pytest.raises(AnalysisError, match="turned often enough"):
+        track_tests(straight, asked, asked.adaptive)
+    with pytest.raises(AnalysisError, match="which track"):
+        track_tests(straight.drop(columns="track"), asked, asked.adaptive)
