@@ -12,6 +12,8 @@ from analysis.results import PlannedResults, unit_decimals
 
 Columns = dict[str, tuple[object, Cell]]
 D, F, P, T, BF = element("i", "d"), element("i", "F"), element("i", "p"), element("i", "t"), "BF₁₀"
+ADJUSTED = {"tukey": "Tukey", "bonferroni": "Bonferroni", "holm": "Holm"}
+HOLM_LIMITS = "With Holm the limits are Bonferroni's, wider than its p."
 
 
 def str_right(value: object) -> str:

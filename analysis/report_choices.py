@@ -12,7 +12,9 @@ from analysis.drawing import DrawnFigure
 from analysis.further_test import FurtherTest
 from analysis.markup import Markup, element, table, text
 from analysis.report_cells import (
+    ADJUSTED,
     BF,
+    HOLM_LIMITS,
     Columns,
     D,
     F,
@@ -30,7 +32,6 @@ from analysis.report_cells import (
 from analysis.results import ALPHA, PlannedResults
 
 Plots = Mapping[str, DrawnFigure]
-ADJUSTED = {"tukey": "Tukey", "bonferroni": "Bonferroni", "holm": "Holm"}
 LONG = 24  # rows of a table that is folded away
 
 
@@ -74,7 +75,8 @@ def pairs_section(test: FurtherTest, results: PlannedResults, plots: Plots) -> M
         inside = f" inside every {by}" if by else ""
         head = element("h3", f"{factors}{inside} ({ADJUSTED.get(adjust, 'p uncorrected')})")
         parts += [head, _folded(shown, columns)]
-    notes = ["Estimated marginal means, one family of comparisons in every level they stand in.", *test.notes]
+    holm = HOLM_LIMITS if (data["adjust"] == "holm").any() else ""
+    notes = [f"Estimated marginal means, one family of comparisons in every level they stand in. {holm}", *test.notes]
     return section("Planned pairs", parts, notes, list(data["sentence"]))
 
 

@@ -10,6 +10,8 @@ from analysis import apa, report_text
 from analysis.drawing import DrawnFigure
 from analysis.markup import Cell, Markup, bullets, element, join, table, text
 from analysis.report_cells import (
+    ADJUSTED,
+    HOLM_LIMITS,
     bayes_cell,
     check_plot,
     degrees_cell,
@@ -128,12 +130,13 @@ def posthoc_section(results: PlannedResults) -> Markup:
     for effect, part in results.posthoc.groupby("effect", sort=False):
         parts.append(_family(str(effect), part, results))
     if len(results.posthoc):
+        holm = f"{HOLM_LIMITS} " if plan.adjust == "holm" else ""
         kind = "pairs that differ are bold. " if len(results.posthoc) else ""
         parts.append(
             element(
                 "p",
-                f"p: {plan.adjust}, over all pairs of one effect; {kind}d is the difference over the "
-                f"root mean of the two "
+                f"p: {ADJUSTED.get(plan.adjust, 'unadjusted')}, over all pairs of one effect; {kind}{holm}d is the "
+                f"difference over the root mean of the two "
                 "variances between participants. All pairs, with standard errors and limits, are in "
                 "posthoc.csv.",
                 class_="note",
