@@ -19,7 +19,7 @@ from analysis.further_tests import planned_tests
 from analysis.intervals import ordinary
 from analysis.journal import RecordedStudy
 from analysis.marginal_means import marginal_means
-from analysis.plan import AnalysisPlan
+from analysis.plan import GAZE_SHARE, AnalysisPlan
 from analysis.plan_parts import TTestPlan
 from analysis.repeated_measures import COLUMNS as ANOVA_COLUMNS
 from analysis.repeated_measures import anova_of_cells
@@ -46,6 +46,12 @@ def compute(recorded: RecordedStudy, plan: AnalysisPlan, trials: pd.DataFrame) -
 def _compute(recorded: RecordedStudy, plan: AnalysisPlan, trials: pd.DataFrame) -> PlannedResults:
     said = list(recorded.warnings)
     used = used_trials(trials, plan)
+    if plan.measure == GAZE_SHARE and plan.measure not in used:
+        said.append(
+            "No gaze was recorded, so there are no shares of looking time to analyse; record with an eye tracker "
+            "(`gaze:` in the study file)."
+        )
+        used = used.iloc[:0].assign(gaze_share=pd.Series(dtype=float), region=pd.Series(dtype=object))
     used = _known_groups(used, plan, said)
     cells, descriptives = describe(used, plan)
     means = None

@@ -47,7 +47,12 @@ def trials_table(recorded: RecordedStudy, plan: AnalysisPlan) -> pd.DataFrame:
 def used_trials(trials: pd.DataFrame, plan: AnalysisPlan) -> pd.DataFrame:
     """The rows a plan's tests rest on: trials that are not excluded; of gaze shares, a row per trial and region."""
     used = trials[trials["excluded"] == ""] if "excluded" in trials else trials
-    return gaze_rows(used, REGIONS) if plan.measure == GAZE_SHARE else used
+    return gaze_rows(used, REGIONS) if plan.measure == GAZE_SHARE and has_gaze(used) else used
+
+
+def has_gaze(trials: pd.DataFrame) -> bool:
+    """Whether gaze was recorded, as shares of looking time on regions."""
+    return any(f"{before}gaze_{REGIONS[0]}" in trials for before in ("", "measured_"))
 
 
 def _row(run: RecordedRun, trial: dict[str, Any], plan: AnalysisPlan) -> dict[str, Any]:

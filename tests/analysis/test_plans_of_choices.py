@@ -222,3 +222,15 @@ def test_gaze_shares_become_a_within_factor_of_regions():
 def test_gaze_shares_without_an_eye_tracker_are_a_sentence():
     with pytest.raises(AnalysisError, match="No gaze was recorded"):
         gaze_rows(pd.DataFrame({"participant": ["a"]}), ["legs"])
+
+
+def test_a_study_without_an_eye_tracker_is_analysed_all_the_same_and_says_so(analysed, tmp_path):
+    from tests.analysis.recorded import study_text, write_study
+
+    gaze = "measure: gaze_share, label: Gaze, unit: '%', anova: {within: [region]}, figures: [{kind: means, x: region}]"
+    also = f"  also: [{{{gaze}}}]\n"
+    text = study_text().replace("  exclusions: []", f"{also}  exclusions: []")
+    assert inconsistencies(parse_study("s.yaml", text).study) == []
+    outcome = analyse(write_study(tmp_path / "walk_ratio", 6, text), tmp_path / "out")
+    assert any("No gaze was recorded" in warning for warning in outcome.warnings)
+    assert len(pd.read_csv(tmp_path / "out" / "anova.csv")) == 15
