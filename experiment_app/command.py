@@ -114,6 +114,9 @@ def run_study(
     trigger: Annotated[
         str, Parameter(help="Line for trigger pulses, as serial:/dev/ttyUSB0 or parallel:/dev/parport0.")
     ] = "",
+    lsl: Annotated[
+        bool, Parameter(negative="", help="Announce trials, pauses and the end on a Lab Streaming Layer marker stream.")
+    ] = False,
     seed: Annotated[
         int | None, Parameter(help="Seed of the trial order; by default made from study, ID and run.")
     ] = None,
@@ -133,8 +136,8 @@ def run_study(
         devices=tuple(devices or ()), photodiode=photodiode,
     )  # fmt: skip
     return run_live(
-        study, participant, data or Path("pilot" if pilot else "data"), screen=screen, trigger=trigger, seed=seed,
-        new_run=new_run, pilot=pilot, resume=resume, ask=_ask, say=_say,
+        study, participant, data or Path("pilot" if pilot else "data"), screen=screen, trigger=trigger, lsl=lsl,
+        seed=seed, new_run=new_run, pilot=pilot, resume=resume, ask=_ask, say=_say,
     )  # fmt: skip
 
 

@@ -14,8 +14,18 @@ from typing import Literal
 from experiment_app.check import check_names, checked_study, refuse_mistakes
 from experiment_app.crash_note import crash_note
 from experiment_app.errors import RunError, UsageError
+from experiment_app.gaze.recording import gaze_watched, recording_gaze
 from experiment_app.loop import run_session
-from experiment_app.opening import OpenRun, kind_of, open_new, open_unfinished, refuse_mixed, unfinished_run
+from experiment_app.markers import announcing
+from experiment_app.opening import (
+    OpenRun,
+    kind_of,
+    open_new,
+    open_unfinished,
+    recorded_plan,
+    refuse_mixed,
+    unfinished_run,
+)
 from experiment_app.run_folder import Run, check_participant, first_headers
 from experiment_app.staging import making_of
 from experiment_app.timing_page import write_certificate
@@ -66,6 +76,7 @@ def run_live(
     *,
     screen: ScreenOptions,
     trigger: str = "",
+    lsl: bool = False,
     seed: int | None,
     new_run: bool,
     pilot: bool = False,
@@ -85,7 +96,8 @@ def run_live(
         raise UsageError(f"--seed: participant {participant} has an unfinished run, which keeps its own order.")
     if old is not None and not _continues(old, file, resume, ask, say):
         return 2
-    with open_window(file.study.title, screen) as window:
+    study_played = file.study if old is None else recorded_plan(old).study
+    with open_window(file.study.title, screen) as window, gaze_watched(study_played.gaze, window) as gaze:
         if old is not None:
             opened = open_unfinished(old, display=window.description())
             if opened.torn:
@@ -105,12 +117,13 @@ def run_live(
         with (
             sitting,
             opened.journal as journal,
-            triggering(journal, trigger, window.now) as recorder,
+            announcing(journal, lsl, opened.run, file.hash, window.now) as announced,
+            triggering(announced, trigger, window.now) as triggered,
             ending_signals(window.request_end),
         ):
             prepare(opened.plan)
             with without_collection():
-                session = run_session(begin(opened.plan), window, recorder)
+                session = run_session(begin(opened.plan), window, recording_gaze(triggered, gaze))
     _certify(opened.run, say)
     command = f"gaitlab run {study} --participant {participant} --data {data}{' --pilot' if pilot else ''}"
     return _farewell(opened, command, session.ended, say)

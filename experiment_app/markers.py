@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from experiment_app.loop import Recorder
-from experiment_app.lsl import import_pylsl
-from protocols.record import Ended, Header, Paused, Record, Resumed, TrialBegun, TrialRecord
+from experiment_app.lsl import clock_offset, import_pylsl
+from experiment_app.run_folder import Run
+from protocols.record import Ended, Paused, Record, Resumed, TrialBegun, TrialRecord
 
 CODES = {"begin": 1, "trial": 2, "pause": 3, "resume": 4, "end": 5}
 """Kind of record to the number in its marker, the same that a trigger line would carry."""
@@ -41,17 +44,17 @@ class MarkerStream:
     sending. offset: s from the run's clock to Lab Streaming Layer's. Use as a context manager.
     """
 
-    def __init__(self, journal: Recorder, header: Header, offset: float) -> None:
+    def __init__(self, journal: Recorder, run: Run, study_hash: str, offset: float) -> None:
         pylsl = import_pylsl()
         self._journal, self._offset = journal, offset
-        name = f"gaitlab {header.study}"
-        source = f"gaitlab/{header.study}/{header.participant}/{header.run}"
+        name = f"gaitlab {run.study}"
+        source = f"gaitlab/{run.study}/{run.participant}/{run.number}"
         info = pylsl.StreamInfo(name, "Markers", 1, pylsl.IRREGULAR_RATE, pylsl.cf_string, source)
         about = info.desc()
         for key, value in (
-            ("study_hash", header.study_hash),
-            ("participant", header.participant),
-            ("run", str(header.run)),
+            ("study_hash", study_hash),
+            ("participant", run.participant),
+            ("run", str(run.number)),
             ("format", "JSON: kind, code and what identifies the event; stamped with its time on the screen"),
         ):
             about.append_child_value(key, value)
@@ -75,3 +78,13 @@ class MarkerStream:
     def saved(self) -> bool:
         """True when the journal has everything."""
         return self._journal.saved
+
+
+@contextmanager
+def announcing(journal: Recorder, on: bool, run: Run, study_hash: str, now: Callable[[], float]) -> Iterator[Recorder]:
+    """The recorder itself when not `on`, else one that also announces; now: the time on the run's clock (s)."""
+    if not on:
+        yield journal
+        return
+    with MarkerStream(journal, run, study_hash, clock_offset(now())) as stream:
+        yield stream

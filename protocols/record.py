@@ -213,6 +213,29 @@ class FrameLog:
 
 
 @dataclass(frozen=True)
+class GazeTrace:
+    """What one trial's gaze was on, a place in each list per frame whose body-part map was drawn.
+
+    flips:   s on the run's clock, when the frame was seen. x, y: the gaze on the picture, (0, 0) its top left and
+             (1, 1) its bottom right, None without one.
+    regions: legs, arms, torso, head, elsewhere, or unknown without a gaze. joints: the finer part, a VRM joint name.
+    walkers: which walker of the scene, from 0; -1 elsewhere.
+    """
+
+    kind = "gaze"
+    time: float
+    number: int
+    practice: bool
+    attempt: int
+    flips: tuple[float, ...]
+    x: tuple[float | None, ...]
+    y: tuple[float | None, ...]
+    regions: tuple[str, ...]
+    joints: tuple[str, ...]
+    walkers: tuple[int, ...]
+
+
+@dataclass(frozen=True)
 class TriggerSent:
     """A code was sent on the trigger line; time: right after sending (s). of: kind of the record it announces."""
 
@@ -258,7 +281,7 @@ class Withdrawn:
 
 Record = (
     Header | Consented | Answered | PageShown | Key | Click | TrialBegun | TrialRecord
-    | Paused | Resumed | FrameLog | TriggerSent | Continued | Ended | Withdrawn
+    | Paused | Resumed | FrameLog | GazeTrace | TriggerSent | Continued | Ended | Withdrawn
 )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from pydantic import ConfigDict, Field
 from protocols.adjustment_part import Adjustment
 from protocols.choice_part import Choice
 from protocols.further_tests import DPrime, Pairs, Proportions, Psychometric, TTest
+from protocols.gaze import GazeSettings
 from protocols.order import ListOrder, Order
 from protocols.parts import Key, Level, Name, Number, Part, Text
 from protocols.rating_part import Rating
@@ -362,6 +363,7 @@ class Study(Part):
     practice: list[Practice] = Field(default_factory=list, description="Training trials, in this order.")
     breaks: Breaks | None = None
     resume: Resume = Resume()
+    gaze: GazeSettings | None = Field(None, description="Record what the participant looks at, with an eye tracker.")
     display: Display | None = Field(None, description="Screen and viewing distance, for true angles and perspective.")
     stimulus: Stimulus
     task: Task

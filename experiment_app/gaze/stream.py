@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from experiment_app.errors import UsageError
@@ -14,6 +14,8 @@ from protocols.gaze import GazeSettings
 KNOWN_LABELS = (("x", "y"), ("norm_pos_x", "norm_pos_y"), ("gaze_x", "gaze_y"), ("gaze.x", "gaze.y"), ("X", "Y"))
 """Labels of the two channels in common streams, tried in this order when the study file names none."""
 
+OnPicture = Callable[[float, float], tuple[float, float]]
+
 FINDING_TIME = 5.0
 """s to wait for the stream."""
 
@@ -21,12 +23,13 @@ FINDING_TIME = 5.0
 class GazeStream:
     """Samples of an eye tracker.
 
-    settings: which stream and channels, and their unit; picture: (width, height) of the display in pixels, for streams
-    in pixels. offset: s from the run's clock to Lab Streaming Layer's. Raises UsageError when there is no such
-    stream, or it has no such channels.
+    settings:   which stream and channels, and their unit; display: (width, height) in pixels, for streams in pixels.
+    on_picture: a place on the display to the same place on the picture, both from 0 to 1.
+    offset:     s from the run's clock to Lab Streaming Layer's.
+    Raises UsageError when there is no such stream, or it has no such channels.
     """
 
-    def __init__(self, settings: GazeSettings, picture: tuple[int, int], offset: float) -> None:
+    def __init__(self, settings: GazeSettings, display: tuple[int, int], on_picture: OnPicture, offset: float) -> None:
         pylsl = import_pylsl()
         found = pylsl.resolve_byprop("type", settings.stream_type, 1, FINDING_TIME)
         if not found:
@@ -37,7 +40,7 @@ class GazeStream:
         self._inlet = pylsl.StreamInlet(found[0], max_buflen=60)
         info = self._inlet.info(FINDING_TIME)
         self.name = str(info.name())
-        self._settings, self._picture, self._offset = settings, picture, offset
+        self._settings, self._display, self._on_picture, self._offset = settings, display, on_picture, offset
         self._x, self._y, self._confidence = chosen_channels(_labels(info), settings, self.name)
         self._inlet.time_correction(FINDING_TIME)
         self._inlet.open_stream(FINDING_TIME)
@@ -61,8 +64,8 @@ class GazeStream:
         if not (trusted and math.isfinite(x) and math.isfinite(y)):
             return None
         if self._settings.unit == "pixels":
-            x, y = x / self._picture[0], y / self._picture[1]
-        return GazeSample(time, x, 1.0 - y if self._settings.origin == "bottom_left" else y)
+            x, y = x / self._display[0], y / self._display[1]
+        return GazeSample(time, *self._on_picture(x, 1.0 - y if self._settings.origin == "bottom_left" else y))
 
 
 def chosen_channels(labels: Sequence[str], settings: GazeSettings, stream: str) -> tuple[int, int, int | None]:

@@ -52,17 +52,19 @@ class Renderer:
         """The level of detail of every walker of the last frame, 0 the finest, -1 for one without a body."""
         return self._levels
 
-    def draw_parts(self, frames_ago: int = 0) -> PartMap | None:
+    def draw_parts(self, frames_ago: int = 0, scale: int = 1) -> PartMap | None:
         """Draws the body-part map of the frame drawn last, and returns it or the one of the frame before.
 
         With frames_ago 1 nothing is waited for: that map's bytes have arrived while this frame was drawn. None when
         there is none yet. Call it after `draw`; what is bound afterwards is the map.
+        scale: pixels of the picture per pixel of the map, which is all the cheaper to fetch.
         """
-        if self._parts is None or self._parts.size != self._picture.size:
+        size = (self._picture.size[0] // scale, self._picture.size[1] // scale)
+        if self._parts is None or self._parts.size != size:
             if self._parts is not None:
                 self._parts.release()
-            self._parts = PartMapTarget(self._context, self._picture.size)
-        self._stage.draw_parts(self._viewports, self._parts)
+            self._parts = PartMapTarget(self._context, size)
+        self._stage.draw_parts([view.smaller(scale) for view in self._viewports], self._parts)
         return self._parts.take(frames_ago)
 
     def draw(self, scene: Scene, drawn: Sequence[Drawn], target: moderngl.Framebuffer) -> None:

@@ -24,6 +24,11 @@ class Viewport:
     drawn: Sequence[Drawn]
     area: Area
 
+    def smaller(self, scale: int) -> Viewport:
+        """The same view in a picture with `scale` times fewer pixels across."""
+        left, bottom, width, height = self.area
+        return replace(self, area=(left // scale, bottom // scale, width // scale, height // scale))
+
 
 def viewports_of(scene: Scene, drawn: Sequence[Drawn], size: tuple[int, int]) -> tuple[Viewport, ...]:
     """The views of a picture of `size`: one, or two with as many pixels each, above the strip kept for the page.

@@ -16,6 +16,7 @@ from typing import Any, Literal
 import glfw
 
 from experiment_app.errors import UsageError
+from experiment_app.gaze.watching import GazeWatch
 from experiment_app.scene import Scene
 from experiment_app.walkers import measured_gait
 from experiment_app.windows.display_facts import display_facts
@@ -81,6 +82,8 @@ class DesktopWindow:
         self._patch = patch
         self._mouse = "mouse" in devices
         self._pad = Gamepad() if "gamepad" in devices else None
+        self._watch: GazeWatch | None = None
+        self._unlooked: float | None = None
         self._handle, self._monitor = open_window(title, full_screen, display, size)
         x_display = glfw.get_x11_display() if glfw.get_platform() == glfw.PLATFORM_X11 else None
         try:
@@ -175,14 +178,44 @@ class DesktopWindow:
         predicted = self._pacing.display_time(self.now())
         swap_at = None if self._pacing.throttled else predicted + self.origin
         size = glfw.get_framebuffer_size(self._handle)
-        self._drawing.begin(Order(scene, size, self._pixel_ratio(), swap_at, self._patch))
+        watched = self._watch is not None and scene.visible
+        self._drawing.begin(Order(scene, size, self._pixel_ratio(), swap_at, self._patch, watched))
         while (drawn := self._drawing.seen()) is None:
             self._receive(0.1)
-        return self._flipped(drawn, predicted)
+        flip = self._flipped(drawn, predicted)
+        if self._watch is not None:
+            if self._unlooked is not None and watched:
+                self._watch.shown(self._unlooked, drawn.parts)
+            self._unlooked = flip.time if watched else None
+        return flip
 
     def measure(self, scene: Scene) -> dict[str, float]:
         """The scene's walker measured as it is drawn."""
         return measured_gait(scene)
+
+    def watch(self, gaze: GazeWatch) -> None:
+        """From now on the body-part map of every frame with walkers goes to `gaze`, a frame later."""
+        self._watch = gaze
+
+    def pointer(self) -> tuple[float, float]:
+        """Where the mouse pointer is on the picture, from (0, 0) at its top left to (1, 1)."""
+        x, y = glfw.get_cursor_pos(self._handle)
+        width, height = glfw.get_window_size(self._handle)
+        return x / max(width, 1), y / max(height, 1)
+
+    @property
+    def display_size(self) -> tuple[int, int]:
+        """(width, height) of the display the window is on, in its own pixels; of the window where that is not known."""
+        mode = glfw.get_video_mode(self._monitor) if self._monitor else None
+        return (mode.size.width, mode.size.height) if mode else glfw.get_window_size(self._handle)
+
+    def on_picture(self, x: float, y: float) -> tuple[float, float]:
+        """A place on the display, from (0, 0) at its top left to (1, 1), as the same place on the picture."""
+        left, top = glfw.get_monitor_pos(self._monitor) if self._monitor else glfw.get_window_pos(self._handle)
+        across, down = self.display_size
+        own_left, own_top = glfw.get_window_pos(self._handle)
+        width, height = glfw.get_window_size(self._handle)
+        return (left + x * across - own_left) / max(width, 1), (top + y * down - own_top) / max(height, 1)
 
     # Inside
 

@@ -13,11 +13,15 @@ from typing import Any
 import glfw
 import moderngl
 
+from experiment_app.render.part_map import PartMap
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Scene
 from experiment_app.walkers import drawn_walkers, pose_checksum
 from experiment_app.windows.patch import Patch
 from experiment_app.windows.window import Flip
+
+PART_MAP_SCALE = 4
+"""Pixels of the picture per pixel of the body-part map: a quarter of a degree at most, below an eye tracker's error."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +29,7 @@ class Order:
     """A frame to draw.
 
     size, pixel_ratio: of the framebuffer, pixels. swap_at: s on `time.perf_counter`, not before which to swap;
-    None leaves it to the driver. patch: a square for a photodiode, or None.
+    None leaves it to the driver. patch: a square for a photodiode, or None. parts: also draw the body-part map.
     """
 
     scene: Scene
@@ -33,14 +37,19 @@ class Order:
     pixel_ratio: float
     swap_at: float | None = None
     patch: Patch | None = None
+    parts: bool = False
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """A frame that was seen: its flip (time on `time.perf_counter`), and s from the order until it could be swapped."""
+    """A frame that was seen: its flip (time on `time.perf_counter`), and s from the order until it could be swapped.
+
+    parts: the body-part map of the frame before, whose bytes have come meanwhile; None when none was drawn.
+    """
 
     flip: Flip
     cost: float
+    parts: PartMap | None = None
 
 
 class Drawing:
@@ -147,4 +156,8 @@ class Drawing:
             time.sleep(order.swap_at - ready)
         glfw.swap_buffers(self._handle)
         self._finish()
-        return Drawn(Flip(time.perf_counter(), cpu_ms, pose_checksum(walkers)), ready - begun)
+        flip = Flip(time.perf_counter(), cpu_ms, pose_checksum(walkers))
+        parts = None
+        if order.parts and walkers and min(order.size) > PART_MAP_SCALE:  # after the flip, which it cannot hold up
+            parts = self.renderer.draw_parts(1, PART_MAP_SCALE)
+        return Drawn(flip, ready - begun, parts)

@@ -47,16 +47,17 @@ MARKERS = """
 import json, time, pylsl
 from experiment_app.lsl import clock_offset
 from experiment_app.markers import MarkerStream
-from protocols.record import Header, TrialBegun, PageShown
+from experiment_app.run_folder import Run
+from protocols.record import TrialBegun, PageShown
 
 class Kept:
     def __init__(self): self.records, self.saved = [], True
     def write(self, records): self.records += records
 
 journal = Kept()
-header = Header("walk_ratio", "abc", "", "P01", 1, 1, 0, False, {}, {}, {}, "")
 origin = time.perf_counter()
-with MarkerStream(journal, header, clock_offset(time.perf_counter() - origin)) as stream:
+run = Run(None, "walk_ratio", "P01", 1)
+with MarkerStream(journal, run, "abc", clock_offset(time.perf_counter() - origin)) as stream:
     found = pylsl.resolve_byprop("type", "Markers", 1, 10.0)
     inlet = pylsl.StreamInlet(found[0])
     about = inlet.info(5.0).desc().child_value("participant")
@@ -93,7 +94,7 @@ for label in ("pupil", "norm_pos_y", "confidence", "norm_pos_x"):
 outlet = pylsl.StreamOutlet(info)
 origin = time.perf_counter() - 100.0
 settings = GazeSettings(confidence="confidence", origin="bottom_left")
-stream = GazeStream(settings, (1920, 1080), clock_offset(time.perf_counter() - origin))
+stream = GazeStream(settings, (1920, 1080), lambda x, y: (x, y), clock_offset(time.perf_counter() - origin))
 taken = time.perf_counter() - origin
 for confidence, y in ((1.0, 0.25), (0.1, 0.9), (1.0, float("nan"))):
     outlet.push_sample([3.0, y, confidence, 0.75], pylsl.local_clock())
@@ -122,7 +123,7 @@ def test_a_missing_stream_is_a_sentence(tmp_path):
         "import experiment_app.gaze.stream as stream\n"
         "from protocols.gaze import GazeSettings\n"
         "stream.FINDING_TIME = 0.2\n"
-        "try:\n    stream.GazeStream(GazeSettings(), (1, 1), 0.0)\n"
+        "try:\n    stream.GazeStream(GazeSettings(), (1, 1), None, 0.0)\n"
         "except Exception as error:\n    print(json.dumps([type(error).__name__, str(error)]))\n"
     )
     kind, sentence = run_alone(script, tmp_path)
