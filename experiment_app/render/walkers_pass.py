@@ -147,7 +147,7 @@ class WalkersPass:
         set_if_used(program, "first_walker", batch.first)
         set_if_used(program, "colours", batch.body.colours)
         set_if_used(program, "finishes", batch.body.finishes)
-        set_if_used(program, "close_up", 1.0 if batch.level == 0 else 0.0)
+        set_if_used(program, "close_up", 1.0 if batch.level < 2 else 0.0)
         batch.body.lit.render(moderngl.TRIANGLES, instances=batch.count)
 
     def _textured_program(self) -> moderngl.Program:

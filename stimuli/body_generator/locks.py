@@ -11,6 +11,9 @@ from stimuli.body_generator.head import HeadFrame
 from stimuli.body_generator.polygons import Mesh, normals_of
 from stimuli.skeleton import Floats
 
+STEPS = 8
+"""Steps in which a lock is laid along the head at least; longer ones would leave a round head and float beside it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Locks:
@@ -34,22 +37,24 @@ def comb(cut: Style, frame: HeadFrame, cap: Mesh, segments: int, share: float = 
     width = width * spread * rng.uniform(0.8, 1.3, len(roots))
     lift = lift * rng.uniform(0.6, 1.5, len(roots))
     sway = rng.normal(0, 0.08, len(roots))
+    finer = -(-STEPS // segments)
     path = [roots]
     normals = [normals_of(cut.volume, roots, 0.3)]
-    for _ in range(segments):
+    for _ in range(segments * finer):
         p, n = path[-1], normals[-1]
         d = cut.flow(p, n)
         side = np.cross(n, d)
         d = d + sway[:, None] * side
         d -= n * np.sum(d * n, axis=1, keepdims=True)
         d /= np.maximum(np.linalg.norm(d, axis=1, keepdims=True), 1e-6)
-        following = p + d * (length / segments)[:, None]
+        following = p + d * (length / (segments * finer))[:, None]
         m = normals_of(cut.volume, following, 0.3)
         following = following - m * np.clip(cut.volume(following), -0.6, 0.6)[:, None]
         outside = cut.ends(following) > 0
         following[outside] = p[outside] + 0.25 * (following[outside] - p[outside])
         path.append(following)
         normals.append(m)
+    path, normals = path[::finer], normals[::finer]
     return _as_strips(np.stack(path, 1), np.stack(normals, 1), width, lift, frame, rng)
 
 

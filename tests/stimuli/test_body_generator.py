@@ -8,8 +8,10 @@ pytest.importorskip("fast_simplification")
 
 from stimuli.body_files.baking import bake
 from stimuli.body_generator.__main__ import FIGURES
-from stimuli.body_generator.assemble import body_heat, build
+from stimuli.body_generator.assemble import body_heat, build, hair_pieces
 from stimuli.body_generator.fields import ellipsoid, smooth_min
+from stimuli.body_generator.hair import style, style_names
+from stimuli.body_generator.head import head_frame
 from stimuli.body_generator.heat import MIRROR_JOINT, weights_at
 from stimuli.body_generator.parts import parts_of
 from stimuli.body_generator.polygons import polished, polygonise, volume
@@ -66,3 +68,15 @@ def test_a_smooth_union_is_never_outside_the_plain_one():
     joined = smooth_min(a, b, 0.8)
     assert np.all(joined <= np.minimum(a, b) + 1e-12)
     assert np.all(joined >= np.minimum(a, b) - 0.2 - 1e-12)
+
+
+@pytest.mark.parametrize("level", [0, 1])
+def test_no_lock_of_hair_floats_beside_the_head(level):
+    for name in ("woman", "man"):
+        figure = FIGURES[name]
+        _, everything = parts_of(figure)
+        for cut in style_names(figure):
+            worn = style(cut, figure.female)
+            for piece in hair_pieces(cut, figure, everything, COARSE)[level]:
+                off = worn.volume(head_frame(figure).to_head(piece.mesh.positions))
+                assert off.max() < 1.2  # cm above the surface that locks lie on
