@@ -20,6 +20,7 @@ from experiment_app.render.crowd_levels import (
 )
 from experiment_app.render.drawn import CrowdLook, DrawnCrowd
 from experiment_app.render.light import ON_CROWDS, Sunlight
+from experiment_app.render.part_map import SHADER_CONSTANTS
 from experiment_app.render.programs import build, set_if_used
 from experiment_app.render.shadow_map import set_light
 
@@ -46,7 +47,7 @@ class CrowdPass:
             for faded in (False, True)
         }
         self._shadow = build(context, "walker_shadow.vert", "nothing.frag", FAR)
-        self._parts = build(context, "part_map.vert", "part_map.frag", CROWD)
+        self._parts = build(context, "part_map.vert", "part_map.frag", {**SHADER_CONSTANTS, **CROWD})
         self._meshes: CrowdMeshes | None = None
         self._poses = _table(context, 64, 1)
         self._tables = [_table(context, 1, 1), _table(context, 1, 1)]

@@ -1,7 +1,8 @@
 """Which part of which walker is under any point of the picture: a second pass, without multisampling, read late.
 
 The pass writes joint and walker into bytes; the bytes travel to the CPU while the next frame is drawn, so asking for
-them does not stall the frame. Everything a joint carries most is that joint's part.
+them does not stall the frame. A point belongs to the region whose joints carry it most; borders between regions are as
+fine as the picture, those between joints of one region as the triangles.
 """
 
 from __future__ import annotations
@@ -50,6 +51,32 @@ def part_of(joint: str, walker: int) -> Part:
     elif joint in ("head", "neck"):
         region = "head"
     return Part(region, side, joint, walker)
+
+
+def _shader_constants() -> dict[str, str]:
+    regions: tuple[Region, ...] = ("legs", "arms", "torso", "head")
+    parts = [part_of(joint, 0) for joint in JOINTS]
+    border = {"legs": "UpperLeg", "arms": "UpperArm", "torso": "chest", "head": "neck"}
+    edges = {
+        side: [JOINTS.index(name if name in JOINTS else f"{side}{name}") + 1 for name in (border[r] for r in regions)]
+        for side in ("left", "right")
+    }
+    signs = {"left": 1, "right": -1}
+
+    def array(values: list[int]) -> str:
+        return f"int[{len(values)}]({', '.join(map(str, values))})"
+
+    return {
+        "JOINT_COUNT": str(len(JOINTS)),
+        "REGIONS": array([regions.index(part.region) for part in parts]),
+        "SIDES": array([signs.get(part.side, 0) for part in parts]),
+        "LEFT_BORDER": f"uvec4({', '.join(map(str, edges['left']))})",
+        "RIGHT_BORDER": f"uvec4({', '.join(map(str, edges['right']))})",
+    }
+
+
+SHADER_CONSTANTS = _shader_constants()
+"""What part_map.vert and part_map.frag are compiled with: the region and side of every joint."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ from experiment_app.render.body_buffers import BodyBuffers, BodyOnGpu
 from experiment_app.render.cameras import Viewpoint, as_uniform
 from experiment_app.render.drawn import DrawnWalker
 from experiment_app.render.light import ON_WALKERS, Sunlight
+from experiment_app.render.part_map import SHADER_CONSTANTS
 from experiment_app.render.programs import build, set_if_used
 from experiment_app.render.shadow_map import set_light
 from stimuli.skeleton import JOINTS
@@ -130,7 +131,7 @@ class WalkersPass:
     def draw_parts(self, viewpoint: Viewpoint) -> None:
         """Draws joint and walker of every pixel into the bound part map; the walkers are those placed last."""
         if self._parts is None:
-            self._parts = build(self._context, "part_map.vert", "part_map.frag")
+            self._parts = build(self._context, "part_map.vert", "part_map.frag", SHADER_CONSTANTS)
         self._use(self._parts)
         set_if_used(self._parts, "world_to_clip", viewpoint.matrix_bytes)
         for batch in self._batches:

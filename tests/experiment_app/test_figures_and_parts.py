@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from experiment_app.render.drawn import DrawnWalker
+from experiment_app.render.part_map import part_of
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Camera, Marks, Scene, Walker
 from experiment_app.walkers import cast, drawn_walkers
+from stimuli.skeleton import JOINTS
 from stimuli.skinning import skin
 
 SIZE = (256, 288)
@@ -115,6 +117,22 @@ def test_the_part_map_names_what_the_reference_skinning_puts_there(draw: Draw, r
     assert parts.at(0, 0).walker == -1
 
 
+@pytest.mark.parametrize("phase", [0.0, 0.3, 0.6])
+def test_a_region_is_one_piece_or_one_for_each_side(draw: Draw, renderer: Renderer, phase: float) -> None:
+    """No sleeve leaves teeth on the trunk: head and trunk are one piece, arms and legs two at most, in a front view."""
+    from scipy.ndimage import label
+
+    draw(Scene((replace(WALKER, phase=phase),), Camera("front", 4.0, 1.2, 30.0), lod=0))
+    parts = renderer.draw_parts()
+    assert parts is not None
+    regions = np.array(["", *(part_of(joint, 0).region for joint in JOINTS)])[parts.codes[..., 0]]
+    for region, most in (("head", 1), ("torso", 1), ("arms", 2), ("legs", 2)):
+        pieces, _ = label(regions == region, np.ones((3, 3)))
+        sizes = np.bincount(pieces.ravel())[1:]
+        assert (sizes > 3).sum() <= most, (region, sizes)
+        assert sizes.max() > 100
+
+
 def test_the_part_map_of_the_frame_before_needs_no_wait(draw: Draw, context: moderngl.Context) -> None:
     fresh = Renderer(context, SIZE, 1.0, 1)
     target = context.simple_framebuffer(SIZE)
@@ -180,6 +198,10 @@ SCENES: dict[str, tuple[Scene, tuple[int, int]]] = {
     "man-treadmill": (Scene((replace(WALKER, actor="M1"),), Camera("side", 4.2, 1.2, 30.0), "treadmill"), SIZE),
     "point-light": (Scene((replace(WALKER, body="point_light"),), CLOSE), SIZE),
     "stick-figure": (Scene((replace(WALKER, body="stick_figure"),), CLOSE), SIZE),
+    "street": (
+        Scene((WALKER,), Camera("first_person", height=1.6, field_of_view=45.0, place=(1.5, 12.0)), "street"),
+        PAIR,
+    ),
     "pair": (Scene((WALKER,), CLOSE, beside=Scene((replace(WALKER, actor="M1"),), Camera("legs"))), PAIR),
 }
 
