@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from experiment_app.frames import TrialFrames
-from experiment_app.scene import Scene
+from experiment_app.scene import Scene, Walker
 from experiment_app.staging import stage
 from experiment_app.windows.window import Window
 from protocols.events import Saved, Shown
@@ -49,10 +49,10 @@ def run_session(session: Session, window: Window, journal: Recorder) -> Session:
         newest = stage(_previewed(session, predicted))
         flip = window.show(newest)
         if session.shown is None:
-            frames = TrialFrames()
+            frames, scene = TrialFrames(), Scene()
             session = handle(session, Shown(flip.time))
         if showing:
-            scene = newest
+            scene = _together(scene, newest)
             frames.add(predicted, flip)
         else:
             frames.pause()
@@ -94,6 +94,25 @@ def _write(session: Session, journal: Recorder, window: Window, frames: TrialFra
     if whole:
         journal.write(whole)
     return session
+
+
+def _together(before: Scene, newest: Scene) -> Scene:
+    """What has been seen in a trial so far: the newest scene; of walks that came one after the other, both.
+
+    The second then stands beside the first. Walks that have vanished are kept, so that they can be measured.
+    """
+    if not newest.visible:
+        return before
+    if newest.beside is not None or not newest.walkers or not before.walkers:
+        return newest
+    if _which(newest.walkers[0]) == _which(before.walkers[0]):
+        return replace(newest, beside=before.beside)
+    return replace(before, beside=newest)
+
+
+def _which(walker: Walker) -> tuple[object, ...]:
+    """What makes a walk another one; step frequency does not, as it may be adjusted."""
+    return walker.actor, walker.body, walker.speed, walker.making
 
 
 def _as_answered(scene: Scene, record: TrialRecord) -> Scene:

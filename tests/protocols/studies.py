@@ -52,3 +52,22 @@ def ordered(old: Study, **order: object) -> Study:
     """The study with another order, and other factors where `factors` and `repetitions` are given."""
     changes = {name: order.pop(name) for name in ("factors", "repetitions") if name in order}
     return old.model_copy(update={"order": TypeAdapter(Order).validate_python(order), **changes})
+
+
+def edited(name: str, *replacements: tuple[str, str]) -> StudyFile:
+    """A shipped study with texts replaced, checked only as far as its types go."""
+    text = read_study(name).text
+    for old, new in replacements:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return parse_study(f"{name}.yaml", text)
+
+
+def few_choices(*replacements: tuple[str, str]) -> StudyFile:
+    """speed_editing with one actor and one speed: 3 methods x 2 directions, each twice, after two training trials."""
+    return edited(
+        "speed_editing",
+        ("actor: [F1, F2, M1, M2]", "actor: [F1]"),
+        ("speed: [0.88, 1.06, 1.24]", "speed: [1.06]"),
+        *replacements,
+    )
