@@ -203,7 +203,7 @@ def import_actor(
 
     _use(library)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=out, transient=True) as bar:
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("Reading clips", total=None)
 
         def told(done: int, of: int) -> None:

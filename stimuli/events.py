@@ -35,7 +35,8 @@ LEAST_STRIDE_TIME = 0.5  # s; 240 steps/min is no walk
 LEAST_REACH = 0.12  # m peak to peak, foot against pelvis, of the smallest step taken for walking
 FASTEST = 4.5  # m/s; race walkers reach 4.4, so a faster stride is a jump in the data or a wrong unit
 SAME_WALK = 0.6  # of the upper quartile of stride speeds: a slower stride is standing
-SLOWER, LONGER = 0.18, 0.15  # of the others' medians: an end stride beyond either is setting off or stopping
+SLOWER, LONGER = 0.15, 0.15  # of the others' medians: an end stride beyond either is setting off or stopping
+BELOW_PACE = 0.26  # of the others' median at their strikes: a pelvis so much slower is only getting going, or stopping
 PATH_CUTOFF = 2.0  # Hz, low-pass of the pelvis' path before its length is taken
 STILL = 0.25  # of foot swing: a pelvis that travels less per stride is on a treadmill
 
@@ -258,6 +259,8 @@ class _Stride:
     start: float  # s
     end: float  # s
     travel: float  # m, along the pelvis' path
+    first_speed: float  # m/s, of the pelvis at the first strike
+    last_speed: float
 
     @property
     def time(self) -> float:
@@ -273,14 +276,16 @@ def _strides(paths: FootPaths, events: Sequence[FootEvent]) -> list[_Stride]:
     frames = np.arange(len(paths.pelvis)) / paths.rate
     smooth = _low_pass(paths.pelvis[:, [0, 2]], PATH_CUTOFF, paths.rate)
     walked = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(smooth, axis=0), axis=1))])
+    pace = np.gradient(walked) * paths.rate if len(walked) > 1 else np.zeros(1)
     strides = []
     for index, side in enumerate(SIDES):
         strikes = sorted(e.time for e in events if e.side == side and e.kind == "strike")
         strikes = [time for time in strikes if 0 <= time <= frames[-1]]
         for start, end in pairwise(strikes):
             if end - start > 0.5 * LEAST_STRIDE_TIME:
-                travel = np.interp(end, frames, walked) - np.interp(start, frames, walked)
-                strides.append(_Stride(index, start, end, float(travel)))
+                travel = float(np.interp(end, frames, walked) - np.interp(start, frames, walked))
+                ends = (float(np.interp(time, frames, pace)) for time in (start, end))
+                strides.append(_Stride(index, start, end, travel, *ends))
     return sorted(strides, key=lambda stride: stride.start)
 
 
@@ -288,7 +293,7 @@ def _steady(strides: list[_Stride]) -> tuple[list[_Stride], bool]:
     """The longest run of walking strides without those of setting off and stopping, and whether that is two or more.
 
     A stride much slower than the others is standing, which parts runs; at the ends of a run strides are dropped
-    while they are slower, or last longer, than the rest by more than SLOWER and LONGER.
+    while they are slower, or last longer, than the rest by more than SLOWER and LONGER, or begin or end below pace.
     """
     pace = SAME_WALK * np.percentile([stride.speed for stride in strides], 75)
     runs: list[list[_Stride]] = [[]]
@@ -298,11 +303,12 @@ def _steady(strides: list[_Stride]) -> tuple[list[_Stride], bool]:
         elif runs[-1]:
             runs.append([])
     run = max(runs, key=len)
-    while len(run) > 2:
-        unlike = [_unlike(run[end], run[1:] if end == 0 else run[:-1]) for end in (0, -1)]
-        if max(unlike) <= 1.0:
+    while len(run) > 1:
+        first = max(_unlike(run[0], run[1:]), _below_pace(run[0].first_speed, [s.first_speed for s in run[1:]]))
+        last = max(_unlike(run[-1], run[:-1]), _below_pace(run[-1].last_speed, [s.last_speed for s in run[:-1]]))
+        if max(first, last) <= 1.0:
             break
-        run = run[1:] if unlike[0] >= unlike[1] else run[:-1]
+        run = run[1:] if first >= last else run[:-1]
     return run, len(run) > 1
 
 
@@ -310,7 +316,14 @@ def _unlike(stride: _Stride, others: list[_Stride]) -> float:
     """Above 1 if a stride is slower or longer lasting than the median of others by more than is steady."""
     speed, time = np.median([s.speed for s in others]), np.median([s.time for s in others])
     slower = (1.0 - stride.speed / speed) / SLOWER if speed > 0.1 else 0.0
-    return float(max(slower, (stride.time / time - 1.0) / LONGER))
+    longer = (stride.time / time - 1.0) / LONGER if len(others) > 1 else 0.0
+    return float(max(slower, longer))
+
+
+def _below_pace(speed: float, others: list[float]) -> float:
+    """Above 1 if the pelvis is slower than at the others' strikes by more than BELOW_PACE; one other tells nothing."""
+    usual = float(np.median(others))
+    return (1.0 - speed / usual) / BELOW_PACE if len(others) > 1 and usual > 0.1 else 0.0
 
 
 def _flat(path: Floats, time: float, paths: FootPaths) -> Floats:

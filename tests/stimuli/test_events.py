@@ -17,10 +17,8 @@ MOCAP = Path(__file__).parents[2].parent / "shared" / "mocap"
 needs_captures = pytest.mark.skipif(not MOCAP.is_dir(), reason="the shared captures are not beside the checkout")
 
 NOT_WITHIN_2_PERCENT = {
-    "cmu_32_02": "turns and slows down; the manifest's two steps are its first, 7.5 % faster than all of it",
-    "cgspeed_max_131_01": "a styled start and stop with one stride of even walking",
+    "cgspeed_max_131_01": "a hopping start and stop, no four even steps of which could be the manifest's",
     "cgspeed_max_131_01_metres": "the same take",
-    "walk01": "sets off; 2.1 % below the manifest's inner steps in speed",
 }
 
 
@@ -58,10 +56,10 @@ def test_half_of_the_walks_are_within_0_7_percent_of_the_manifest():
     assert step_frequency <= 0.007
 
 
-def matched(kind):
+def matched(kind, folder="c3d"):
     """Seconds by which found events differ from the nearest of their kind in the file, and how many were not found."""
     differences, missed = [], 0
-    for row in manifest("c3d"):
+    for row in manifest(folder):
         recording = read_c3d(MOCAP / row["file"])
         if not recording.events:
             continue
@@ -76,13 +74,26 @@ def matched(kind):
 
 @needs_captures
 def test_heel_strikes_are_within_20_ms_of_the_files_events():
-    """149 strikes in 32 trials of four laboratories, which differ among each other; one in thirty is further off."""
+    """149 strikes in 32 trials of four laboratories, which differ among each other; one in thirty is further off.
+
+    Those are four strikes of two trials (FunctionalWalk, exampleOverground) whose laboratories set them 20 ms later
+    than Schreiber & Moissenet's force plates do, to which the method's constants were fitted.
+    """
     differences, missed = matched("strike")
     assert missed <= 12  # in the first or last 50 ms of a file
     assert abs(np.median(differences)) < 0.005
     assert np.mean(np.abs(differences)) < 0.010
     assert np.mean(np.abs(differences) <= 0.020) > 0.95
     assert np.max(np.abs(differences)) < 0.040
+
+
+@needs_captures
+def test_heel_strikes_are_within_20_ms_of_force_plates():
+    """Schreiber & Moissenet's events are those of their plates, rounded to frames of 10 ms; one is 20.6 ms off."""
+    differences, _ = matched("strike", "c3d/schreiber")
+    assert len(differences) == 100
+    assert np.sum(np.abs(differences) > 0.020) <= 1
+    assert np.max(np.abs(differences)) < 0.021
 
 
 @needs_captures
