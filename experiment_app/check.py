@@ -100,7 +100,7 @@ def _coverage(study: Study) -> Iterator[Mistake]:
                     else:
                         own_step_frequency(walk.actor, walk.body, making, walk.speed)
                 except ValueError as error:
-                    impossible[walk] = str(error)
+                    impossible[walk] = f"actor {walk.actor}: {error}"
             if walk in impossible and place not in found:
                 found.add(place)
                 yield Mistake(place, impossible[walk])

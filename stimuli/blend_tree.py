@@ -17,7 +17,14 @@ from numpy.typing import NDArray
 
 
 class CoverageError(ValueError):
-    """A wanted value lies outside what the cycles of a tree cover."""
+    """A wanted value lies outside what the cycles of a tree cover.
+
+    sentence: what is wrong; the message goes on with a drawing of what the tree covers, where it can be drawn
+    """
+
+    def __init__(self, sentence: str, drawing: str = "") -> None:
+        super().__init__(f"{sentence}\n{drawing}" if drawing else sentence)
+        self.sentence = sentence
 
 
 @dataclass(frozen=True)
@@ -57,22 +64,44 @@ Tree = Leaf | Branch
 def blend_weights(tree: Tree, wanted: Mapping[str, float]) -> dict[int, float]:
     """Cycle index -> weight, not negative and summing to 1.
 
-    wanted: parameter -> value, for every parameter of the tree. Raises CoverageError outside the tree.
+    wanted: parameter -> value, for every parameter of the tree. Raises CoverageError, which draws what is covered.
     """
+    try:
+        return _weights(tree, wanted)
+    except CoverageError as error:
+        raise _drawn(error, tree, wanted) from None
+
+
+def _weights(tree: Tree, wanted: Mapping[str, float]) -> dict[int, float]:
     if isinstance(tree, Leaf):
         return {tree.cycle: 1.0}
     low, high, share = _neighbours(tree, wanted)
     if tree.follows:
         _check_following(tree, wanted, low, high, share)
     if share == 0.0:
-        return blend_weights(tree.children[low], wanted)
+        return _weights(tree.children[low], wanted)
     if share == 1.0:
-        return blend_weights(tree.children[high], wanted)
+        return _weights(tree.children[high], wanted)
     weights: dict[int, float] = {}
     for child, part in ((low, 1.0 - share), (high, share)):
-        for cycle, weight in blend_weights(tree.children[child], wanted).items():
+        for cycle, weight in _weights(tree.children[child], wanted).items():
             weights[cycle] = weights.get(cycle, 0.0) + part * weight
     return weights
+
+
+def covers(tree: Tree, wanted: Mapping[str, float]) -> bool:
+    """Whether `blend_weights` gives weights for what is wanted."""
+    try:
+        _weights(tree, wanted)
+    except CoverageError:
+        return False
+    return True
+
+
+def _drawn(error: CoverageError, tree: Tree, wanted: Mapping[str, float]) -> CoverageError:
+    from stimuli.coverage_drawing import coverage_drawing  # only when something is refused
+
+    return CoverageError(error.sentence, coverage_drawing(tree, wanted))
 
 
 def many_weights(tree: Tree, wanted: Mapping[str, NDArray[Any]]) -> tuple[NDArray[np.intp], NDArray[np.floating]]:

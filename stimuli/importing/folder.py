@@ -115,9 +115,10 @@ def _check_delivery(actor: StoredActor, folder: Path) -> None:
     for gait in probes(actor):
         try:
             delivered = delivered_gait(drawn, gait.speed, gait.step_frequency, samples=SAMPLES)
-        except (CoverageError, ValueError) as error:
+        except ValueError as error:
+            reason = error.sentence if isinstance(error, CoverageError) else error
             raise ImportingError(
-                f"{folder}: no walk at {gait.speed:.2f} m/s and {gait.step_frequency:.0f} steps/min: {error}"
+                f"{folder}: no walk at {gait.speed:.2f} m/s and {gait.step_frequency:.0f} steps/min: {reason}"
             ) from error
         missed = max(abs(delivered.speed / gait.speed - 1.0), abs(delivered.step_frequency / gait.step_frequency - 1.0))
         if missed > SPEED_ERROR or delivered.slide_mean > SLIDE:

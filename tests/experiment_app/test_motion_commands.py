@@ -66,8 +66,6 @@ def test_clip_for_people_says_the_same(capfd):
         ["actor", "pose", "F99"],
         ["actor", "check", "F99"],
         ["actor", "show", "nobody"],
-        ["actor", "pose", "F1", "--speed", "3.0"],
-        ["actor", "pose", "F1", "--step-frequency", "300"],
         ["actor", "pose", "F1", "--seconds", "-1"],
         ["actor", "pose", "F1", "--rate", "0"],
         ["actor", "import", "no_such_folder", "--name", "anna"],
@@ -81,6 +79,15 @@ def test_a_mistake_is_one_sentence_and_status_2(arguments, capfd):
     text = capfd.readouterr().err
     assert "Traceback" not in text
     assert len(text.strip().splitlines()) == 1
+
+
+@pytest.mark.parametrize("asked", [["--speed", "3.0"], ["--step-frequency", "300"]], ids=lambda asked: asked[0])
+def test_outside_the_coverage_is_one_sentence_and_a_drawing(asked, capfd):
+    assert run(["actor", "pose", "F1", *asked]) == 2
+    sentence, *drawing = capfd.readouterr().err.strip().splitlines()
+    assert "is outside the cycles there are" in sentence
+    assert len(drawing) == 12
+    assert "Traceback" not in "".join(drawing)
 
 
 def test_a_garbled_motion_file_is_one_sentence(tmp_path, capfd):
@@ -142,3 +149,16 @@ def test_show_writes_a_film_strip(tmp_path):
         pytest.skip("no OpenGL 3.3 here")
     assert run(["actor", "show", "F1", "--picture", "strip.png"]) == 0
     assert np.asarray(Image.open(tmp_path / "strip.png")).std() > 5.0
+
+
+def test_check_draws_what_an_actor_covers_where_a_study_asks_for_more(tmp_path, capsys):
+    from protocols.study_file import find_study
+
+    text = find_study("walk_ratio")[1].decode("utf-8").replace("speed: [0.8, 1.0, 1.2]", "speed: [0.8, 1.0, 1.9]")
+    study = tmp_path / "fast.yaml"
+    study.write_text(text, encoding="utf-8")
+    assert run(["check", str(study)]) == 2
+    said = "".join(capsys.readouterr())
+    assert "speed 1.9 m/s is outside the cycles there are: 0.7 to 1.42 m/s" in said
+    assert "X asked for" in said
+    assert "actor F1" in said
