@@ -91,7 +91,7 @@ def _coverage(study: Study) -> Iterator[Mistake]:
     found: set[Place] = set()
     for levels, place in _conditions_and_places(study):
         for walk in study.task.extremes(study.stimulus, levels):
-            if walk not in checked:
+            if walk not in checked and walk.crowd is None:
                 checked.add(walk)
                 try:
                     making = making_of(walk)

@@ -9,21 +9,18 @@ import numpy as np
 
 from experiment_app.render.drawn import CrowdLook, DrawnCrowd
 from experiment_app.scene import STREET_HALF_WIDTH, Crowd, Palette
-from stimuli.blend import CycleTable, WalkCycle
 from stimuli.blend_tree import Leaf
 from stimuli.crowd_bodies import crowd_body
 from stimuli.crowd_looks import Look, linear_rgb, looks
 from stimuli.crowd_motions import SEXES, figure_of, motion_of
 from stimuli.crowd_plan import CrowdPlan, plan_crowd
 from stimuli.crowd_posing import poser
-from stimuli.crowd_table import Mix, WalkTable
+from stimuli.crowd_table import Mix, WalkTable, mixed
 from stimuli.skeleton import Floats
 
 STRETCH = 110.0  # m that a crowd walks along before it comes in again, where that is long enough for so many
 END = 26.0  # z (m) of the stretch's end: walkers go from there back to its beginning
 FADING = (8.0, 1.0)  # m at the beginning and the end within which walkers come and go
-THINNED = 2
-"""Every second of the 256 samples of a cycle is kept: 35 MB for 1000 motions, and no joint 1 mm elsewhere."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,32 +68,20 @@ def measured_crowd(crowd: Crowd) -> dict[str, float]:
 @lru_cache(maxsize=4)
 def crowd_cast(crowd: Crowd) -> CrowdCast:
     """Who is in a crowd, at its beginning. Raises CrowdError for a crowd that there cannot be."""
-    plan = plan_crowd(crowd.size, crowd.variation, crowd.seed, crowd.pool, 2.0 * STREET_HALF_WIDTH, STRETCH)
+    plan = plan_of(crowd)
     return CrowdCast(plan, _mix(plan), _look(plan, crowd.palette))
 
 
+def plan_of(crowd: Crowd) -> CrowdPlan:
+    """Who walks where; makes the walks that were not made before, some milliseconds each."""
+    return plan_crowd(crowd.size, crowd.variation, crowd.seed, crowd.pool, 2.0 * STREET_HALF_WIDTH, STRETCH)
+
+
 def _mix(plan: CrowdPlan) -> Mix:
-    """The crowd's motions in a table of two people, one on the body of each sex, and who walks which."""
-    cycles = {sex: [_thinned(motion_of(style).cycle) for style in plan.motions if style.sex == sex] for sex in SEXES}
-    table = WalkTable.of([(figure_of(sex), CycleTable.of(cycles[sex]), Leaf(0)) for sex in SEXES])
-    contacts = table.contacts[plan.motion]
-    return Mix(
-        table=table,
-        who=np.where(plan.women, 0, 1),
-        rows=table.first_row[plan.motion][:, None],
-        weights=np.ones((len(plan.motion), 1), np.float32),
-        samples=table.samples[plan.motion],
-        stance=contacts[:, :2],
-        ahead=contacts[:, 2:4],
-        left_strike=contacts[:, 4],
-        stride=120.0 * plan.speed / plan.step_frequency / plan.sizes,
-    )
-
-
-def _thinned(cycle: WalkCycle) -> WalkCycle:
-    return replace(
-        cycle, hips=cycle.hips[::THINNED], rotations=cycle.rotations[::THINNED], feet=cycle.feet[:, ::THINNED]
-    )
+    """Who walks which motion; sizes come later, so speeds are those on unscaled bodies."""
+    motions = [motion_of(style) for style in plan.motions]
+    table = WalkTable.of([(figure_of(motion.style.sex), motion.table, Leaf(0)) for motion in motions])
+    return mixed(table, plan.motion, plan.speed / plan.sizes, plan.step_frequency)
 
 
 def _look(plan: CrowdPlan, palette: Palette) -> CrowdLook:

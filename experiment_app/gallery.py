@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from experiment_app.film import save_picture
 from experiment_app.render.part_map import PartMap
 from experiment_app.render.renderer import Renderer
-from experiment_app.scene import Camera, Marks, Scene, View, Walker
+from experiment_app.scene import Camera, Crowd, Marks, Scene, View, Walker
 from experiment_app.walkers import drawn_walkers, walk_of
 from experiment_app.windows.offscreen import offscreen_context
 from stimuli.bodies import shipped_names
@@ -70,6 +70,8 @@ def make_gallery(folder: Path) -> Iterator[Path]:
     styles = drawn([_styled(style) for style in (None, *default_styles())], SMALL)
     save_picture(np.vstack([np.hstack(styles[:6]), np.hstack(styles[6:])]), folder / "styles.png")
     yield folder / "styles.png"
+    for size in (250, 500, 1000):
+        yield row(f"crowd-{size}.png", [_crowd(size)], WIDE)
     yield _parts(folder / "body-parts.png")
     context.release()
 
@@ -127,6 +129,10 @@ def _street() -> Iterator[Scene]:
         actor = rng.choice(("F1", "F2", "F3", "F5", "M1", "M2", "M4", "M6"))
         walkers.append(Walker(actor, 1.2, rng.uniform(98.0, 112.0), rng.random(), place=place))
     yield Scene(tuple(walkers), Camera("elevated", 17.0, 8.0, 32.0, heading=160.0), "street")
+
+
+def _crowd(size: int) -> Scene:
+    return Scene((), Camera("elevated", 34.0, 10.0, 40.0, 180.0), "street", crowd=Crowd(size, seed=6, seconds=2.0))
 
 
 def _parts(path: Path) -> Path:

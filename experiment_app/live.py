@@ -13,6 +13,7 @@ from typing import Literal
 
 from experiment_app.check import check_names, checked_study, refuse_mistakes
 from experiment_app.crash_note import crash_note
+from experiment_app.crowds import plan_of
 from experiment_app.errors import RunError, UsageError
 from experiment_app.gaze.recording import gaze_watched, recording_gaze
 from experiment_app.loop import run_session
@@ -27,7 +28,7 @@ from experiment_app.opening import (
     unfinished_run,
 )
 from experiment_app.run_folder import Run, check_participant, first_headers
-from experiment_app.staging import making_of
+from experiment_app.staging import crowd_of, making_of
 from experiment_app.timing_page import write_certificate
 from experiment_app.triggers import triggering
 from experiment_app.walkers import cast, own_step_frequency
@@ -121,7 +122,7 @@ def run_live(
             triggering(announced, trigger, window.now) as triggered,
             ending_signals(window.request_end),
         ):
-            prepare(opened.plan)
+            prepare(opened.plan, say)
             with without_collection():
                 session = run_session(begin(opened.plan), window, recording_gaze(triggered, gaze))
     _certify(opened.run, say)
@@ -175,10 +176,16 @@ def _minutes_since(old: Run, say: Callable[[str], None]) -> float:
     return max(gap, 0.0)
 
 
-def prepare(plan: Plan) -> None:
+def prepare(plan: Plan, say: Callable[[str], None]) -> None:
     """Makes every walker the plan will show, so that nothing is loaded between trials."""
     steps = [step for step in plan.steps if isinstance(step, TrialStep)]
-    for walk in {walk for step in steps for walk in walks_of(plan.study, step).values()}:
+    walks = {walk for step in steps for walk in walks_of(plan.study, step).values()}
+    if any(walk.crowd is not None for walk in walks):
+        say("Making the walks of the crowds, which takes some seconds.")
+    for walk in walks:
+        if walk.crowd is not None:
+            plan_of(crowd_of(walk.crowd))
+            continue
         cast(walk.actor, walk.body)
         own_step_frequency(walk.actor, walk.body, making_of(walk), walk.speed)
 

@@ -139,7 +139,7 @@ def _provenance(study: Study) -> dict[str, str]:
     """Actor to where the walk comes from, for every actor of the study and its training."""
     from stimuli.actors import load_actor
 
-    actors = sorted({walk.actor for walk in shown_walks(study)})
+    actors = sorted({walk.actor for walk in shown_walks(study) if walk.crowd is None})
     return {actor: load_actor(actor).provenance for actor in actors}
 
 

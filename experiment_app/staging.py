@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import asdict, replace
 
-from experiment_app.scene import Box, Camera, Line, Marks, Page, Row, Scene, Slider, Walker
+from experiment_app.scene import Box, Camera, Crowd, Line, Marks, Page, Row, Scene, Slider, Walker
 from experiment_app.walkers import own_step_frequency
+from protocols.crowd_part import CrowdOf
 from protocols.form import Choice, Form
 from protocols.plan import QuestionsStep, TextStep
 from protocols.rating import CONFIRM, ON_SCALE
@@ -60,7 +61,7 @@ def staged(study: Study, walkers: tuple[Walker, ...]) -> Scene:
 
 def view_scene(study: Study, view: View) -> Scene:
     """What a trial shows: one walk, or two beside each other, and in a strip below them what is asked."""
-    scenes = [staged(study, (_walker(seen),)) for seen in view.walks]
+    scenes = [_seen_scene(study, seen) for seen in view.walks]
     scene = Scene()
     if scenes:
         scene = scenes[0] if len(scenes) == 1 else replace(scenes[0], beside=scenes[1])
@@ -68,6 +69,18 @@ def view_scene(study: Study, view: View) -> Scene:
         return replace(scene, caption=study.words.trial_caption)
     page = _question_page(study, view)
     return replace(scene, page=replace(page, over_scene=bool(scenes)), strip=page.strip)
+
+
+def _seen_scene(study: Study, seen: Seen) -> Scene:
+    """One walk, or one crowd, as the study wants it seen."""
+    if seen.walk.crowd is None:
+        return staged(study, (_walker(seen),))
+    return replace(staged(study, ()), crowd=crowd_of(seen.walk.crowd, seen.time))
+
+
+def crowd_of(crowd: CrowdOf, seconds: float = 0.0) -> Crowd:
+    """A trial's crowd as a scene holds it, so many s after it began to walk."""
+    return Crowd(crowd.size, crowd.variation, crowd.seed, crowd.pool, crowd.palette, seconds)
 
 
 def _walker(seen: Seen) -> Walker:

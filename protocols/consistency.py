@@ -20,7 +20,7 @@ from protocols.planned_analysis import analysis_mistakes
 from protocols.setting import Given, references, setting_mistakes, unfit
 from protocols.stimulus import Walk
 from protocols.study import ChoiceQuestion, Study
-from protocols.viewing import viewing_mistakes
+from protocols.viewing import PLACED, viewing_mistakes
 
 TAKEN_COLUMNS = frozenset({"study", "participant", "run", "trial", "block", "repetition"})
 """Columns that every table of trials has."""
@@ -33,6 +33,8 @@ MOST_TRIALS = 10_000
 
 def inconsistencies(study: Study) -> list[Mistake]:
     """Every contradiction inside a study, in no particular order; an empty list when there is none."""
+    if incomplete := list(_stimulus(study)):
+        return incomplete
     return [
         *_levels(study),
         *_references(study),
@@ -71,6 +73,29 @@ def _walks(study: Study, trials: Iterable[Mapping[str, Level]]) -> set[Walk]:
         except (KeyError, ValueError):
             continue
     return walks
+
+
+def _stimulus(study: Study) -> Iterator[Mistake]:
+    """One actor with a speed, or a crowd; not both."""
+    look = study.stimulus
+    if look.crowd is None:
+        changed = [name for name, a in getattr(study.task, "alternatives", {}).items() if a.crowd is not None]
+        for name in changed:
+            yield Mistake(("task", "alternatives", name, "crowd"), "there is no stimulus.crowd that it could change")
+        for key in ("actor", "speed"):
+            if getattr(look, key) is None:
+                yield Mistake(("stimulus",), f"{key} is missing; it can be left out with a crowd only")
+        return
+    for key in ("actor", "speed", "body", "making"):
+        if getattr(look, key) is not None:
+            yield Mistake(("stimulus", key), "a crowd has its own people and speeds; remove this, or the crowd")
+    if study.task.kind == "adjustment":
+        yield Mistake(("task", "kind"), "a crowd has no step frequency to adjust; choose choice or rating")
+    if look.camera.view not in PLACED:
+        message = f"{look.camera.view} follows one walker; a crowd is seen by {' or '.join(PLACED)}"
+        yield Mistake(("stimulus", "camera"), message)
+    if look.ground == "treadmill":
+        yield Mistake(("stimulus", "ground"), "a crowd needs a ground that is walked along; choose street")
 
 
 def _levels(study: Study) -> Iterator[Mistake]:
@@ -165,6 +190,6 @@ def _questions(study: Study) -> Iterator[Mistake]:
             where = ("participants", "questions", i, "minimum")
             yield Mistake(where, f"{question.minimum} is above maximum {question.maximum}")
     if "preferred_walk_ratio" in study.simulation.model_fields_set:
-        for name in sorted({walk.actor for walk in _walks(study, conditions(study))}):
+        for name in sorted({walk.actor for walk in _walks(study, conditions(study)) if walk.crowd is None}):
             if name not in study.simulation.preferred_walk_ratio:
                 yield Mistake(("simulation", "preferred_walk_ratio"), f"actor {name} is missing", on_key=True)

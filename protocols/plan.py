@@ -6,7 +6,7 @@ A plan follows from the study, the participant's number and the seed alone; it k
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from protocols.adaptive import Tracks, begin_tracks
@@ -42,11 +42,13 @@ class TrialStep:
 
     order: names of its alternatives from left to right or first to last, ("",) where there is only one walk.
     attempt: how often it has been begun, from 1.
+    seed: the run's, for what of the stimulus is left to chance.
     """
 
     trial: Trial
     order: tuple[str, ...] = ("",)
     attempt: int = 1
+    seed: int = 0
 
     @property
     def id(self) -> str:
@@ -81,7 +83,12 @@ class Plan:
 def walks_of(study: Study, step: TrialStep) -> dict[str, Walk]:
     """Name to walk of the alternatives of a trial, in the order they are shown."""
     walks = study.task.walks(study.stimulus, step.trial.values)
-    return {name: walks[name] for name in step.order}
+    return {name: _with_chance(walks[name], study, step) for name in step.order}
+
+
+def _with_chance(walk: Walk, study: Study, step: TrialStep) -> Walk:
+    """A crowd's paths are drawn for the trial, the same for all alternatives; a single walk has no chance in it."""
+    return walk if walk.crowd is None else replace(walk, crowd=walk.crowd.drawn_by(study.study, step.seed, step.id))
 
 
 def _with_orders(study: Study, trials: list[Trial], seed: int) -> list[TrialStep]:
@@ -91,7 +98,7 @@ def _with_orders(study: Study, trials: list[Trial], seed: int) -> list[TrialStep
     names = list(task.walks(study.stimulus, trials[0].values))
     kind = "practice" if trials[0].practice else "trials"
     orders = balanced_orders(trials, names, f"{study.study}/sides/{kind}/{seed}") if task.balanced else None
-    return [TrialStep(trial, orders[i] if orders else tuple(names)) for i, trial in enumerate(trials)]
+    return [TrialStep(trial, orders[i] if orders else tuple(names), seed=seed) for i, trial in enumerate(trials)]
 
 
 def make_plan(study: Study, seed: int, participant_number: int, group: Mapping[str, str] | None = None) -> Plan:

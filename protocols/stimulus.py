@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, Tag
 
+from protocols.crowd_part import CrowdChange, CrowdOf, CrowdPart
 from protocols.mistake import Place
 from protocols.parts import Level, Number, Speed, StepFrequency, Text
 from protocols.setting import (
@@ -95,6 +96,7 @@ class Alternative(SettingsPart):
     speed: SpeedSetting | None = Field(None, description="m/s")
     step_frequency: StepFrequencySetting | None = Field(None, description="steps/min; what the walk has if left out.")
     making: MakingPart | None = None
+    crowd: CrowdChange | None = Field(None, description="What of the crowd differs.")
 
     @classmethod
     def takes(cls) -> dict[str, Any]:
@@ -102,19 +104,22 @@ class Alternative(SettingsPart):
         return {"actor": Text, "body": Text, "speed": Speed, "step_frequency": StepFrequency}
 
     def settings(self, place: Place) -> Iterator[Given]:
-        """Every setting that is given, also of the way of making."""
+        """Every setting that is given, also of the way of making and of the crowd."""
         yield from super().settings(place)
         if self.making is not None:
             yield from self.making.settings((*place, "making"))
+        if self.crowd is not None:
+            yield from self.crowd.settings((*place, "crowd"))
 
 
 class Stimulus(SettingsPart, Appearance):
     """What walks: each value is a constant, `$factor` (its level in the trial) or a table by a factor."""
 
-    actor: NameSetting = Field(description="An actor's name, or $factor.")
-    speed: SpeedSetting = Field(description="Walking speed, m/s, or $factor.")
+    actor: NameSetting | None = Field(None, description="An actor's name, or $factor. Needed without a crowd.")
+    speed: SpeedSetting | None = Field(None, description="Walking speed, m/s, or $factor. Needed without a crowd.")
     body: NameSetting | None = Field(None, description="A body's name or $factor; the actor's own when left out.")
     making: MakingPart | None = Field(None, description="How the walk is made; captured when left out.")
+    crowd: CrowdPart | None = Field(None, description="Many people instead of one actor.")
 
     @classmethod
     def takes(cls) -> dict[str, Any]:
@@ -122,14 +127,18 @@ class Stimulus(SettingsPart, Appearance):
         return {"actor": Text, "speed": Speed, "body": Text}
 
     def settings(self, place: Place) -> Iterator[Given]:
-        """Every setting that is given, also of the way of making."""
+        """Every setting that is given, also of the way of making and of the crowd."""
         yield from super().settings(place)
         if self.making is not None:
             yield from self.making.settings((*place, "making"))
+        if self.crowd is not None:
+            yield from self.crowd.settings((*place, "crowd"))
 
     def walk(self, levels: Mapping[str, Level], alternative: Alternative | None = None) -> Walk:
         """The walk of a trial with these levels, or an alternative's: what it leaves out is as in the stimulus."""
         given = alternative or Alternative()
+        if self.crowd is not None:
+            return Walk("", "", 0.0, crowd=self.crowd.resolved(levels, given.crowd))
         body, making = given.body or self.body, given.making or self.making
         frequency = value_of(given.step_frequency, levels)
         return Walk(
@@ -163,6 +172,7 @@ class Walk:
     """Which walk is shown in a trial.
 
     body: "" is the actor's own. speed: m/s. step_frequency: steps/min, None: what the walk has by itself.
+    crowd: who walks instead of one actor; then the others say nothing.
     """
 
     actor: str
@@ -170,3 +180,4 @@ class Walk:
     speed: float
     step_frequency: float | None = None
     making: Making = Making()
+    crowd: CrowdOf | None = None

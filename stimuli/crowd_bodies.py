@@ -39,6 +39,9 @@ def _limb(joint: str) -> str:
 
 LIMBS = np.array([JOINTS.index(_limb(joint)) for joint in JOINTS])
 
+HAIR_LIFT = 0.12
+"""m per metre of a cube's side: about how far the middles of clusters lie inside a head."""
+
 SMALL = ("eye", "iris", "pupil", "lash", "brow", "lip", "laces", "soles")
 """Surfaces that a coarse level does without."""
 
@@ -48,8 +51,16 @@ def crowd_body(name: str, hair: str, build: str) -> Body:
     """A shipped body with that haircut and build, and coarser levels of detail after its own."""
     body = with_girths(load_body(name, hair), GIRTHS[build])
     last = tuple(surface for surface in body.levels[-1] if surface.name not in SMALL)
-    coarse = (tuple(clustered(surface, side, carriers) for surface in last) for side, carriers in COARSE)
+    coarse = (tuple(_coarse(surface, side, carriers) for surface in last) for side, carriers in COARSE)
     return replace(body, levels=(*body.levels, *coarse))
+
+
+def _coarse(surface: Surface, side: float, carriers: int) -> Surface:
+    """The surface clustered; hair in finer cubes and lifted, so that it covers the clustered head."""
+    if surface.name != "hair":
+        return clustered(surface, side, carriers)
+    hair = clustered(surface, 0.6 * side, carriers)
+    return replace(hair, positions=hair.positions + (HAIR_LIFT * side) * hair.normals)
 
 
 def clustered(surface: Surface, side: float, carriers: int) -> Surface:

@@ -8,13 +8,13 @@ made person differs from the average as much, and in the same coefficients toget
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
 
 import numpy as np
 
-from stimuli.blend import WalkCycle
+from stimuli.blend import CycleTable, WalkCycle
 from stimuli.bodies import load_body
 from stimuli.gait_model import GRAVITY, GaitModel, Step, WalkCurves, load_gait_model
 from stimuli.retarget import Figure, walk_cycle
@@ -47,17 +47,19 @@ class Style:
 class Motion:
     """A walk on the unscaled body of its sex.
 
-    cycle: at the walk's own speed and step frequency; step_length m
+    step_length: m; step_frequency: steps/min, of its own accord; table: its one cycle, in single precision, so that a
+    thousand walks are 70 MB.
     """
 
     style: Style
     step_length: float
-    cycle: WalkCycle
+    step_frequency: float
+    table: CycleTable
 
     @property
     def speed(self) -> float:
         """m/s, of its own accord on the unscaled body."""
-        return self.cycle.speed
+        return self.step_length * self.step_frequency / 60.0
 
 
 def figure_of(sex: Sex) -> Figure:
@@ -88,7 +90,12 @@ def motion_of(style: Style) -> Motion:
     coefficients = model.coefficients(step, sex, manner)
     curves = WalkCurves.symmetric(coefficients, model.stance_share(step, sex))
     cycle = walk_cycle(figure, curves, speed, frequency)
-    return Motion(style, length, cycle)
+    return Motion(style, length, frequency, CycleTable.of([_single(cycle)]))
+
+
+def _single(cycle: WalkCycle) -> WalkCycle:
+    hips, rotations, feet = (values.astype(np.float32) for values in (cycle.hips, cycle.rotations, cycle.feet))
+    return replace(cycle, hips=hips, rotations=rotations, feet=feet)
 
 
 def drawn_step_length(rng: np.random.Generator) -> float:

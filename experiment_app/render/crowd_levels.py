@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from experiment_app.render.cameras import NEAR, Viewpoint
 from stimuli.skeleton import Floats
 
-HEIGHTS = np.array([500.0, 230.0, 85.0, 48.0, 26.0])
+HEIGHTS = np.array([500.0, 230.0, 76.0, 45.0, 26.0])
 """Pixels of stature below which the next coarser level is drawn."""
 
 MIDDLE = 0.9  # m above the ground, about the middle of a person

@@ -7,14 +7,15 @@ import numpy as np
 import pytest
 
 from experiment_app.crowds import END, crowd_cast, drawn_crowd
+from experiment_app.film import condition_of, walking
 from experiment_app.render.cameras import place_camera
 from experiment_app.render.crowd_levels import BAND, HEIGHTS, levels_of, seen_instances, shadow_instances
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Camera, Crowd, Scene
 from experiment_app.walkers import drawn_walkers, measured_gait
 from experiment_app.windows.offscreen import offscreen_context
+from protocols.study_file import read_study
 from stimuli.actors import load_actor
-from stimuli.blend import CycleTable
 from stimuli.blend_tree import Leaf
 from stimuli.crowd_motions import figure_of, motion_of
 from stimuli.walker import drawn_pose, skin_matrices
@@ -48,15 +49,12 @@ def test_everybody_is_posed_as_their_motion_says_and_stands_where_the_plan_says(
     np.testing.assert_allclose(crowd.rows[:, 63, 2], places[:, 1] + END - plan.length, atol=1e-4)
     for walker in range(0, CROWD.size, 7):
         motion = motion_of(plan.motions[plan.motion[walker]])
-        alone = replace(
-            load_actor("F1"), figure=figure_of(motion.style.sex), table=CycleTable.of([motion.cycle]), tree=Leaf(0)
-        )
+        alone = replace(load_actor("F1"), figure=figure_of(motion.style.sex), table=motion.table, tree=Leaf(0))
         speed = motion.step_length * plan.step_frequency[walker] / 60.0
         pose = drawn_pose(alone, speed, plan.step_frequency[walker], phases[walker])
         expected = plan.sizes[walker] * skin_matrices(alone, pose)
         got = crowd.rows[walker, :63].reshape(21, 3, 4)
-        # every second sample of a cycle is kept: no joint is more than 2 mm elsewhere
-        np.testing.assert_allclose(got, expected, atol=4e-3)
+        np.testing.assert_allclose(got, expected, atol=1e-4)
         moved = plan.sizes[walker] * speed
         assert moved == pytest.approx(plan.speed[walker])
 
@@ -168,3 +166,16 @@ def test_what_a_crowd_walks_is_measured():
     assert gait["step_length_mean"] == pytest.approx(0.77, abs=0.05)
     assert gait["nearest_m"] > 0.55
     assert 1.3 < gait["speed_mean"] < 1.8
+
+
+def test_a_study_shows_its_crowds_at_the_time_they_have_walked():
+    study = read_study("crowd_variety").study
+    scene = walking(study, condition_of(study, ["variation=1:25", "size=250"]), 5.0)
+    crowds = (scene.crowd, scene.beside.crowd)
+    assert [crowd.variation for crowd in crowds] == ["1:1", "1:25"]
+    assert {crowd.seconds for crowd in crowds} == {5.0}
+    assert {crowd.size for crowd in crowds} == {250}
+    assert "more different walks" in str(scene.page)
+    gone = walking(study, condition_of(study, ["variation=1"]), 28.5)
+    assert gone.crowd is None
+    assert gone.page is not None

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from stimuli.actors import load_actor
-from stimuli.blend import CycleTable
 from stimuli.blend_tree import Leaf
 from stimuli.bodies import load_body
 from stimuli.crowd_bodies import GIRTHS, SMALL, crowd_body
@@ -21,8 +20,8 @@ from stimuli.measure import delivered_gait
 )
 def test_a_made_walk_delivers_its_step_and_its_feet_stand_still(style):
     motion = motion_of(style)
-    walker = replace(load_actor("F1"), figure=figure_of(style.sex), table=CycleTable.of([motion.cycle]), tree=Leaf(0))
-    gait = delivered_gait(walker, motion.cycle.speed, motion.cycle.step_frequency)
+    walker = replace(load_actor("F1"), figure=figure_of(style.sex), table=motion.table, tree=Leaf(0))
+    gait = delivered_gait(walker, motion.speed, motion.step_frequency)
     assert gait.step_length == pytest.approx(motion.step_length, rel=1e-3)
     assert gait.slide_mean < 5.0
     assert gait.slide_peak < 10.0
@@ -39,11 +38,11 @@ def test_made_people_differ_from_the_average_as_captured_ones_do():
 
 def test_the_same_style_is_the_same_walk_and_others_are_others():
     motion_of.cache_clear()
-    first = motion_of(Style("M", 3)).cycle
+    first = motion_of(Style("M", 3)).table
     motion_of.cache_clear()
-    np.testing.assert_array_equal(motion_of(Style("M", 3)).cycle.rotations, first.rotations)
-    assert np.abs(motion_of(Style("M", 4)).cycle.rotations - first.rotations).max() > 0.01
-    assert np.abs(motion_of(Style("M", 3, pool=1)).cycle.rotations - first.rotations).max() > 0.01
+    np.testing.assert_array_equal(motion_of(Style("M", 3)).table.body, first.body)
+    assert np.abs(motion_of(Style("M", 4)).table.body - first.body).max() > 0.01
+    assert np.abs(motion_of(Style("M", 3, pool=1)).table.body - first.body).max() > 0.01
 
 
 def test_the_least_distinctive_person_is_the_nearest_to_the_average():
@@ -103,8 +102,8 @@ def test_coarse_bodies_are_as_large_as_fine_ones_and_move_like_them(kind):
     fine = np.concatenate([s.positions for s in body.levels[2] if s.name not in SMALL])
     for level in body.levels[3:]:
         places = np.concatenate([surface.positions for surface in level])
-        np.testing.assert_allclose(places.min(axis=0), fine.min(axis=0), atol=1e-9)
-        np.testing.assert_allclose(places.max(axis=0), fine.max(axis=0), atol=1e-9)
+        np.testing.assert_allclose(places.min(axis=0), fine.min(axis=0), atol=0.06)
+        np.testing.assert_allclose(places.max(axis=0), fine.max(axis=0), atol=0.06)  # hair is lifted
         for surface in level:
             np.testing.assert_allclose(surface.weights.sum(axis=1), 1.0, atol=1e-6)
             assert surface.triangles.max() < len(surface.positions)

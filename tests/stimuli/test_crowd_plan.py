@@ -93,7 +93,7 @@ def test_nobody_hurries_or_dawdles():
     crowd = plan(250, "1:2")
     assert crowd.step_frequency.min() > 85.0
     assert crowd.step_frequency.max() < 155.0
-    own = np.array([motion_of(style).cycle.step_frequency for style in crowd.motions])[crowd.motion]
+    own = np.array([motion_of(style).step_frequency for style in crowd.motions])[crowd.motion]
     assert np.std(crowd.step_frequency / own) < 0.09
 
 
