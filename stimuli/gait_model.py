@@ -48,6 +48,11 @@ MODEL_ARM = np.array([0.5, -np.sqrt(0.75), 0.0])
 """Direction of the left arm to which the arms' rotations refer: 30 degrees off vertical."""
 
 
+LONGEST_STEP = 1.4
+"""Leg lengths: the model knows no longer step; a figure with very short legs steps as far as it must, in this manner.
+The longest step of the actors' grid is 1.37."""
+
+
 @dataclass(frozen=True)
 class Step:
     """One way of stepping, without units (Hof 1996).
@@ -118,7 +123,7 @@ class GaitModel:
 
     def predictors(self, step: Step, sex: float = 0.0) -> Floats:
         """(4,): 1, step length, cadence for that step length, sex (-0.5 man, 0 unknown, +0.5 woman)."""
-        length = step.length - self.centre[0]
+        length = min(step.length, LONGEST_STEP) - self.centre[0]
         expected = self.centre[1] + self.cadence_slope * length
         cadence = self.cadence_limit * np.tanh((step.frequency - expected) / self.cadence_limit)
         return np.array([1.0, length, cadence, sex])

@@ -188,7 +188,8 @@ def _pitched(sole: Sole, drawn: Floats, yaw: Floats, knee_yaw: Floats, side: Flo
 def _leg_vector(leg: Leg, thigh: Floats, shank: Floats, sideways: Floats) -> Floats:
     """(N, 2) m up and forward from hip to ankle, for inclinations of its bones (rad).
 
-    The knee angle is kept, so the part of the leg's length that leads sideways is taken off.
+    The knee angle is kept, so the part of the leg's length that leads sideways is taken off; a stout figure's legs may
+    be too short for the step's width, and then keep a fifth of their length.
     """
     vector = np.column_stack(
         [
@@ -197,7 +198,8 @@ def _leg_vector(leg: Leg, thigh: Floats, shank: Floats, sideways: Floats) -> Flo
         ]
     )
     length = reach(leg, thigh - shank)
-    return vector * (np.sqrt(length**2 - sideways**2) / np.linalg.norm(vector, axis=1))[:, None]
+    upright = np.sqrt(np.maximum(length**2 - sideways**2, (0.2 * length) ** 2))
+    return vector * (upright / np.linalg.norm(vector, axis=1))[:, None]
 
 
 def _advance(paths: Sequence[LegPath], harmonics: Floats, stride: float) -> tuple[Floats, list[LegPath]]:

@@ -108,7 +108,7 @@ def test_a_gltf_with_other_files_becomes_one_file(tmp_path):
     assert np.array_equal(one.levels[0][0].positions, many.levels[0][0].positions)
 
 
-@pytest.mark.parametrize("model", ["CesiumMan.glb", "RiggedFigure.glb"])
+@pytest.mark.parametrize("model", ["CesiumMan.glb", "RiggedFigure.glb", "KayKit_Knight.glb"])
 def test_imported_soles_stay_within_five_millimetres_of_the_ground(model):
     if not (MODELS / model).exists():
         pytest.skip("the Khronos sample models are not here")
