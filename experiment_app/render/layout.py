@@ -24,7 +24,7 @@ TITLE, SMALL = 1.62, 0.80
 """Font sizes of titles, and of hints and small text, relative to text."""
 LEADING, TITLE_LEADING = 1.5, 1.25
 TITLE_TOP = 0.17
-"""Where every page that is not over a scene begins, of the window's height; before it begins higher, text shrinks."""
+"""Where a page that is not over a scene begins, of the window's height; a long one begins higher."""
 LEAST_PIXELS = 15.0
 """Font size of text in small windows, in pixels of an ordinary display."""
 MEASURE, WIDE_MEASURE, CARD_MEASURE = 34.0, 40.0, 29.0
@@ -137,9 +137,9 @@ def _layout(page: Page, width: int, height: int, setting: Setting) -> PageLayout
         complete = needed + 2 * padding <= height
     else:
         hint_top = height - margin - hint.height
-        top = round(TITLE_TOP * height)
-        complete = content.height <= hint_top - gap - top
-        top = min(top, max(hint_top - gap - content.height, margin))
+        room = hint_top - gap - content.height
+        complete = room >= margin
+        top = max(min(round(TITLE_TOP * height), room), margin)
     whole = _join([_moved(content, left, top), _moved(hint, left, hint_top)])
     return PageLayout(
         width, height, setting.text / 10, whole.texts, whole.boxes, whole.sliders, whole.rings, whole.signs,
