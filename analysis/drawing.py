@@ -19,6 +19,7 @@ from analysis.plan import AnalysisPlan
 COLOURS = ("#2b6cb0", "#c05621", "#2f855a", "#805ad5", "#b7791f", "#4a5568")
 MARKERS = ("o", "s", "^", "D", "v", "P")
 REFERENCE = "#c53030"
+FITTING = 74  # characters of level names that fit side by side under an axis
 SETTINGS: dict[Any, Any] = {
     "svg.hashsalt": "gaitlab",
     "svg.fonttype": "path",
@@ -113,7 +114,8 @@ def measure_label(plan: AnalysisPlan) -> str:
 
 
 def finish(axes: Any, plan: AnalysisPlan, x: str, levels: tuple[str, ...]) -> None:
-    axes.set_xticks(range(len(levels)), levels)
+    slanted = sum(len(level) + 2 for level in levels) > FITTING
+    axes.set_xticks(range(len(levels)), levels, **({"rotation": 35, "ha": "right"} if slanted else {}))
     axes.set_xlim(-0.5, len(levels) - 0.5)
     axes.set_xlabel(x)
     axes.set_ylabel(measure_label(plan))

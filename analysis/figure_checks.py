@@ -21,12 +21,13 @@ BINS = 12  # stretches of the session in the order figure
 
 
 def residual_quantiles(means: CellMeans) -> pd.DataFrame:
-    """Q-Q data of the ANOVA's residuals, each in units of its cell's standard deviation."""
+    """Q-Q data of the ANOVA's residuals in units of their cell's standard deviation, without cells that have none."""
     model = fit(means)
     sd = np.sqrt(np.sum(model.residuals**2, axis=0) / model.df)
-    if not np.all(sd**2 > model.no_variance_below):
-        raise AnalysisError("A Q-Q plot needs variance in every cell.")
-    return quantiles((model.residuals / sd).ravel())
+    varying = sd**2 > model.no_variance_below
+    if not varying.any():
+        raise AnalysisError("A Q-Q plot needs a cell in which people differ.")
+    return quantiles((model.residuals[:, varying] / sd[varying]).ravel())
 
 
 def qq_figure(means: CellMeans, plan: AnalysisPlan) -> DrawnFigure:

@@ -8,6 +8,7 @@ from analysis.apa import anova_sentence, effect_name, number, p_value, regressio
 from analysis.further_tests import FurtherTest
 from analysis.results import ALPHA, PlannedResults, unit_decimals
 
+MANY = 12  # pairs that are no longer told one by one
 FEW = 4  # tests of one family that are told one by one
 
 
@@ -18,6 +19,9 @@ def _direction(results: PlannedResults, effect: str) -> list[str]:
         return []
     if not len(pairs):
         return [f"No pair of levels of {effect} differs after correction."] if len(results.posthoc) else []
+    if len(pairs) > MANY:
+        count = int((results.posthoc["effect"] == effect).sum())
+        return [f"{effect.capitalize()}: {len(pairs)} of {count} pairs of levels differ after correction."]
     words = [f"{r.a} < {r.b}" if r.estimate < 0 else f"{r.b} < {r.a}" for r in pairs.itertuples()]
     adjust = {"tukey": "Tukey", "bonferroni": "Bonferroni", "holm": "Holm"}.get(
         str(results.plan.adjust), "no correction"
