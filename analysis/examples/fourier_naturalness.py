@@ -1,8 +1,9 @@
 """Naturalness of Fourier walks, rated 0 to 4: mean with limits per style (Tilmanne & Dutoit).
 
-    python -m analysis.examples.fourier_naturalness ratings.csv
+    python -m analysis.examples.fourier_naturalness trials.csv
 
-Columns: participant, style, rating. Raters who saw different pairs are welcome: nobody is left out.
+trials.csv is what `gaitlab analyse` writes for this study: participant, style, rating. Raters who saw different pairs
+are welcome: nobody is left out.
 """
 
 from __future__ import annotations

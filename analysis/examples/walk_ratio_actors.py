@@ -2,8 +2,9 @@
 
     python -m analysis.examples.walk_ratio_actors trials.csv
 
-Columns: participant, participant_gender, viewing, actor, actor_sex, character (matched, mismatched),
-height (m), weight (kg), speed (m/s), step_length (m), step_frequency (steps/min).
+trials.csv is what `gaitlab analyse` writes for this study: participant, participant_gender, viewing, actor, actor_sex,
+character (matched, mismatched), step_length (m), step_frequency (steps/min). Height (m), weight (kg) and comfortable
+speed (m/s) of the actors are in the study file.
 """
 
 from __future__ import annotations
@@ -14,12 +15,18 @@ import pandas as pd
 
 from analysis import anova, mixed_model, normalised_gait, pairwise, regression
 from analysis.apa import anova_sentence
+from analysis.plan import read_plan
+from protocols.study_file import read_study
 
 WITHIN, BETWEEN = ["actor_sex", "character"], ["viewing", "participant_gender"]
 
 
 def main(path: str) -> None:
+    known = read_plan(read_study("walk_ratio_actors").text, "walk_ratio_actors.yaml").regression
+    assert known is not None
     trials = pd.read_csv(path)
+    for name, by_actor in known.on.items():
+        trials[name] = trials["actor"].map(by_actor)
     trials["walk_ratio"] = trials["step_length"] / trials["step_frequency"]
     trials["walk_ratio_n"] = normalised_gait(trials, "height")["walk_ratio_n"]
     for measure in ("walk_ratio", "walk_ratio_n"):
