@@ -98,6 +98,10 @@ def _only_five_joints(skin):
         (lambda d: d.update(extensionsRequired=["KHR_draco_mesh_compression"]), "needs KHR_draco_mesh_compression"),
         (lambda d: [n.pop("skin", None) for n in d["nodes"]], "no mesh hangs on a skeleton"),
         (lambda d: d["skins"][0].update(joints=[0] * 300), "300 joints, more than 256"),
+        (
+            lambda d: d["meshes"][0].update(primitives=d["meshes"][0]["primitives"] * 60),
+            "triangles, more than 500000; simplify it first",
+        ),
         (lambda d: d["skins"][0].update(joints=[999]), "joints that do not exist"),
         (lambda d: _only_five_joints(d["skins"][0]), "but its skin has 5; export the file again"),
         (lambda d: d["nodes"][3].update(children=[0]), "each other's parents"),
