@@ -14,7 +14,7 @@ from cyclopts import App, Parameter
 from rich.console import Console
 
 from experiment_app.body_commands import body_commands
-from experiment_app.data_commands import export, withdraw
+from experiment_app.data_commands import console, export, withdraw
 from experiment_app.errors import RunError, UsageError
 from experiment_app.motion_commands import actor_commands, clip
 from experiment_app.style_commands import style_commands
@@ -31,6 +31,7 @@ app.command(clip)
 app.command(actor_commands)
 app.command(body_commands)
 app.command(style_commands)
+app.command(console)
 app.command(export)
 app.command(withdraw)
 

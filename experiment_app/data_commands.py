@@ -1,4 +1,4 @@
-"""The commands about recorded data: export them, and take a participant out of them."""
+"""The commands about recorded data: export them, watch them grow, and take a participant out of them."""
 
 from __future__ import annotations
 
@@ -43,6 +43,36 @@ def export(
     if to == "bids":
         out.print(f"Check it with: bids-validator-deno {out_folder}  (pip install 'gaitlab[validate]')", markup=False)
     note_derived(folder, Derived("export", to, str(out_folder.resolve())))
+    return 0
+
+
+def console(
+    folder: StudyFolder,
+    *,
+    participant: Annotated[str, Parameter(help="The ID of who is to be watched; by default the newest run's.")] = "",
+    once: Annotated[bool, Parameter(negative="", help="One line about the run, then end; for scripts.")] = False,
+    ask_for: Annotated[
+        Literal["pause", "resume", "stop"] | None, Parameter(name="--ask", help="Ask the run for this, then end.")
+    ] = None,
+) -> int:
+    """Watch a participant at work, from another terminal: progress, time left, late frames, last responses.
+
+    Keys pause the session, let it go on, or stop it. The run is never held up: the console reads the journal.
+    """
+    from experiment_app.console.asking import ask
+    from experiment_app.console.progress import status
+    from experiment_app.console.screen import show
+    from experiment_app.console.watching import Watching, newest_run
+
+    run = newest_run(folder, participant)
+    watching = Watching(run)
+    if ask_for is not None:
+        ask(run.folder, ask_for)
+        out.print(f"Asked the run of participant {run.participant} to {ask_for}.", markup=False)
+    elif once:
+        out.print(status(watching.look()), markup=False)
+    else:
+        show(watching, Console())
     return 0
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import signal
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -12,6 +13,9 @@ from pathlib import Path
 from typing import Literal
 
 from experiment_app.check import check_names, checked_study, refuse_mistakes
+from experiment_app.console.asking import listening
+from experiment_app.console.status_line import status_line
+from experiment_app.console.watching import watched_so_far
 from experiment_app.crash_note import crash_note
 from experiment_app.crowds import plan_of
 from experiment_app.errors import RunError, UsageError
@@ -37,7 +41,7 @@ from experiment_app.windows.key_times import Keyboard
 from experiment_app.windows.patch import Corner, Patch
 from protocols import resuming
 from protocols.plan import Plan, TrialStep, walks_of
-from protocols.session import begin
+from protocols.session import STOPPED_BY_EXPERIMENTER, begin
 from protocols.study_file import StudyFile, parse_study
 
 SIGNALS = ("SIGTERM", "SIGINT", "SIGHUP", "SIGBREAK")
@@ -120,11 +124,13 @@ def run_live(
             opened.journal as journal,
             announcing(journal, lsl, opened.run, file.hash, window.now) as announced,
             triggering(announced, trigger, window.now) as triggered,
+            status_line(triggered, watched_so_far(opened.run, opened.plan.total), sys.stderr) as told,
+            listening(window, opened.run.folder) as heard,
             ending_signals(window.request_end),
         ):
             prepare(opened.plan, say)
             with without_collection():
-                session = run_session(begin(opened.plan), window, recording_gaze(triggered, gaze))
+                session = run_session(begin(opened.plan), heard, recording_gaze(told, gaze))
     _certify(opened.run, say)
     command = f"gaitlab run {study} --participant {participant} --data {data}{' --pilot' if pilot else ''}"
     return _farewell(opened, command, session.ended, say)
@@ -231,7 +237,7 @@ def _farewell(opened: OpenRun, again: str, ended: str, say: Callable[[str], None
         return 0
     why = f"the computer asked it to end, {ended}" if ended.startswith("SIG") else ended
     message = f"the run ended early ({why}); everything recorded is in {run.journal}. To go on: {again}"
-    if ended == "stopped":
+    if ended in ("stopped", STOPPED_BY_EXPERIMENTER):
         say(message[0].upper() + message[1:])
         return 1
     raise RunError(message)

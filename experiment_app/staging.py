@@ -166,7 +166,9 @@ def _overlay_page(session: Session, overlay: Overlay) -> Page:
     title, text = {
         "pause": (words.pause_title, words.pause_text),
         "break": (words.break_title, words.break_text),
+        "experimenter": (words.pause_title, words.experimenter_pause_text),
         "stop": (words.stop_title, words.stop_text),
     }[overlay.why]
     lines = (Line(title, "title"), *paragraphs(text))
-    return Page(lines, _rows(overlay.form), hint=words.choose_hint, over_scene=session.trial is not None)
+    hint = words.choose_hint if overlay.form.buttons else ""
+    return Page(lines, _rows(overlay.form), hint=hint, over_scene=session.trial is not None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 
 @dataclass(frozen=True)
@@ -73,4 +74,12 @@ class Closed:
     reason: str = "window closed"
 
 
-Event = KeyDown | KeyUp | Typed | Clicked | FocusLost | Shown | Saved | Closed
+@dataclass(frozen=True)
+class Asked:
+    """The experimenter asked, from a console, that the session pause, go on or stop."""
+
+    time: float
+    what: Literal["pause", "resume", "stop"]
+
+
+Event = KeyDown | KeyUp | Typed | Clicked | FocusLost | Shown | Saved | Closed | Asked

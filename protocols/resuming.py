@@ -32,7 +32,9 @@ def again(plan: Plan, progress: Progress) -> Progress:
     """
     if plan.study.resume.policy != "block":
         return progress
-    return replace(progress, left=progress.left - _begun_block(plan, progress))
+    repeated = _begun_block(plan, progress)
+    answers = tuple(answer for answer in progress.answers if f"trial-{answer[0]}" not in repeated)
+    return replace(progress, left=progress.left - repeated, answers=answers)
 
 
 def _begun_block(plan: Plan, progress: Progress) -> set[str]:

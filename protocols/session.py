@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from protocols.adaptive import Tracks, after_response, placed
-from protocols.events import Clicked, Closed, Event, FocusLost, KeyDown, KeyUp, Saved, Shown
+from protocols.events import Asked, Clicked, Closed, Event, FocusLost, KeyDown, KeyUp, Saved, Shown
 from protocols.form import Choice, Entry, Form, handle_form
 from protocols.plan import Plan, QuestionsStep, Step, TextStep, TrialStep
 from protocols.record import (
@@ -28,6 +28,9 @@ from protocols.record import (
 )
 from protocols.study import ChoiceQuestion, NumberQuestion, Question, TextPage
 from protocols.task import TaskTrial
+
+STOPPED_BY_EXPERIMENTER = "stopped by the experimenter"
+"""Why a session ended that the experimenter stopped from the console."""
 
 UNREAD = 0.25
 """s after a page appears in which keys do nothing, so that pressing Enter twice leaves no page unseen."""
@@ -120,6 +123,8 @@ def handle(session: Session, event: Event) -> Session:
     if isinstance(event, Shown):
         return _seen(session, event)
     session = advance(session, event.time)
+    if isinstance(event, Asked):
+        return _asked(session, event)
     if session.overlay is not None:
         return _overlaid(session, session.overlay, event)
     if isinstance(event, KeyDown) and event.key == "escape" and not _last_page(session):
@@ -311,9 +316,10 @@ def _trial_record(session: Session, step: TrialStep, trial: TaskTrial, time: flo
 # Pauses
 
 
-def _paused(session: Session, event: KeyDown, why: str) -> Session:
+def _paused(session: Session, event: KeyDown | Asked, why: str) -> Session:
     words = session.plan.study.words
-    buttons = (("resume", words.resume), ("stop", words.stop)) if why == "pause" else (("resume", words.resume),)
+    resume, stop = ("resume", words.resume), ("stop", words.stop)
+    buttons = {"pause": (resume, stop), "break": (resume,), "experimenter": ()}[why]
     stage = session.stage if session.trial is None else session.trial.advance(event.time).paused()
     overlay = Overlay(why, event.time, Form(buttons=buttons, focus=0))
     session = replace(session, stage=stage, overlay=overlay, pauses=session.pauses + 1)
@@ -324,6 +330,8 @@ def _overlaid(session: Session, overlay: Overlay, event: Event) -> Session:
     words = session.plan.study.words
     if isinstance(event, KeyDown) and event.key == "escape":
         return _resumed(session, overlay, event.time)
+    if not overlay.form.buttons:  # the experimenter's pause
+        return session
     form = handle_form(overlay.form, event)
     if form.pressed == "resume":
         return _resumed(session, overlay, event.time)
@@ -334,6 +342,21 @@ def _overlaid(session: Session, overlay: Overlay, event: Event) -> Session:
         page = TextPage(title=words.stopped, text=words.stopped_text)
         return _farewell(replace(session, overlay=None), event.time, "stopped", page)
     return replace(session, overlay=replace(overlay, form=form))
+
+
+def _asked(session: Session, event: Asked) -> Session:
+    """The session as the experimenter wants it; their pause has no button, so that only they, or Escape, end it."""
+    if _last_page(session):
+        return session
+    if event.what == "stop":
+        words = session.plan.study.words
+        page = TextPage(title=words.stopped, text=words.stopped_text)
+        return _farewell(replace(session, overlay=None), event.time, STOPPED_BY_EXPERIMENTER, page)
+    if event.what == "resume" and session.overlay is not None:
+        return _resumed(session, session.overlay, event.time)
+    if event.what == "pause" and session.overlay is None:
+        return _paused(session, event, "experimenter")
+    return session
 
 
 def _resumed(session: Session, overlay: Overlay, time: float) -> Session:

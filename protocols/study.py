@@ -130,6 +130,7 @@ class Words(Part):
     not_a_number: Text = "Please type a whole number from {minimum} to {maximum}."
     pause_title: Text = "Paused"
     pause_text: Text = "The study waits for you."
+    experimenter_pause_text: Text = "The experimenter has paused the study. It goes on in a moment."
     resume: Text = "Go on"
     stop: Text = "Stop the session"
     stop_title: Text = "Stop the session?"

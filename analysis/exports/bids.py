@@ -83,16 +83,21 @@ def _run_files(run: ExportedRun) -> Iterator[tuple[str, bytes]]:
             f"{stem}_recording-adjustment_stim.json",
             json_bytes(_continuous(course, run, SAMPLING, start, "Step frequency as adjusted; n/a between trials.")),
         )
-    frames = tables.frames(run)
-    if frames.rows and "time" in frames.columns:
-        frames = _as_bids(frames, ("participant", "run"))
-        rate = round(1.0 / float(run.of(*tables.FRAME_RECORDS)[0].record["period"]), 6)
-        text = (
-            "One row a frame, seen at `time`: SamplingFrequency is the display's refresh rate, and frames may be late."
-        )
-        yield f"{stem}_recording-frames_stim.tsv.gz", gzipped(tsv_bytes(frames, header=False))
-        start = float(frames.rows[0]["time"])
-        yield f"{stem}_recording-frames_stim.json", json_bytes(_continuous(frames, run, rate, start, text))
+    for recording, table in (("frames", tables.frames(run)), ("gaze", tables.gaze(run))):
+        if "time" in table.columns:
+            yield from _frame_files(run, recording, table, stem)
+
+
+def _frame_files(run: ExportedRun, recording: str, table: Table, stem: str) -> Iterator[tuple[str, bytes]]:
+    """A table with a row a frame, as a continuous recording."""
+    drawn = run.of("frames")
+    period = float(drawn[0].record["period"]) if drawn else float(run.header["display"].get("period_s") or 1.0 / 60.0)
+    text = "One row a frame, seen at `time`: SamplingFrequency is the display's refresh rate, and frames may be late."
+    start = float(table.rows[0]["time"])
+    plain = _as_bids(table, ("participant", "run"))
+    yield f"{stem}_recording-{recording}_stim.tsv.gz", gzipped(tsv_bytes(plain, header=False))
+    about = _continuous(plain, run, round(1.0 / period, 6), start, text)
+    yield f"{stem}_recording-{recording}_stim.json", json_bytes(about)
 
 
 def _sample(sample: tuple[Any, float] | None) -> Row:

@@ -92,6 +92,11 @@ KNOWN = {
     "interval_ms": Column("Time since the frame before was seen.", "ms"),
     "cpu_ms": Column("Processor time spent on drawing the frame.", "ms"),
     "pose": Column("Checksum of the joint matrices that were drawn."),
+    "x": Column("Where the gaze was on the picture, 0 at its left edge, 1 at its right; missing without a gaze."),
+    "y": Column("Where the gaze was on the picture, 0 at its upper edge, 1 at its lower; missing without a gaze."),
+    "region": Column("What the gaze was on: legs, arms, torso, head, elsewhere, or unknown without a gaze."),
+    "joint": Column("The finer part the gaze was on, a VRM joint name."),
+    "walker": Column("Which walker of the scene the gaze was on, from 0; -1 elsewhere."),
     "late": Column("Whether the frame was seen more than 1.5 refresh periods after the one before."),
     "begins_stretch": Column("Whether the frame begins the trial or goes on with it after a pause."),
 }

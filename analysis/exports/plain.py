@@ -12,7 +12,13 @@ from analysis.exports.runs import ExportedRun
 from analysis.exports.table import Table, cell, csv_bytes
 from analysis.exports.words import readme, study_files
 
-BY_RUN: tuple[Callable[[ExportedRun], Table], ...] = (tables.trials, tables.events, tables.trace, tables.frames)
+BY_RUN: tuple[Callable[[ExportedRun], Table], ...] = (
+    tables.trials,
+    tables.events,
+    tables.trace,
+    tables.frames,
+    tables.gaze,
+)
 
 
 def csv_files(runs: Sequence[ExportedRun]) -> Iterator[tuple[str, bytes]]:

@@ -10,8 +10,11 @@ from analysis.exports.table import Row, Table, table_of
 from analysis.exports.trace import courses
 
 TRIAL_FIRST = ("participant", "run", "trial", "practice", "block", "repetition", "attempt", "counts")
-FRAME_RECORDS = ("frames",)
-MARKS = {"begin", "trial", "key", "page", "pause", "resume", "continue", "end", "consent", "answer", *FRAME_RECORDS}
+BY_FRAME = ("frames", "gaze")
+"""Kinds of records that hold lists with a place for every frame."""
+
+MARKS = {"begin", "trial", "key", "page", "pause", "resume", "continue", "end", "consent", "answer", *BY_FRAME}
+SINGULAR = {"poses": "pose", "regions": "region", "joints": "joint", "walkers": "walker"}
 
 
 def participants(runs: Sequence[ExportedRun]) -> Table:
@@ -164,9 +167,17 @@ def trace(run: ExportedRun) -> Table:
 
 def frames(run: ExportedRun) -> Table:
     """One row a frame of every trial that was drawn: when it was seen (s since the run began), and what was noted."""
+    return _by_frame(run, "frames")
+
+
+def gaze(run: ExportedRun) -> Table:
+    """One row a frame of every trial whose gaze was recorded: where it was on the picture, and on what."""
+    return _by_frame(run, "gaze")
+
+
+def _by_frame(run: ExportedRun, kind: str) -> Table:
     whose = {"participant": run.participant, "run": run.number}
-    rows = ({**whose, **row} for timed in run.of(*FRAME_RECORDS) for row in _frames_of(timed))
-    return table_of("frames", rows)
+    return table_of(kind, ({**whose, **row} for timed in run.of(kind) for row in _frames_of(timed)))
 
 
 def _frames_of(timed: Timed) -> Iterable[Row]:
@@ -189,7 +200,8 @@ def _frames_of(timed: Timed) -> Iterable[Row]:
             if name in ("flips", "predicted"):
                 row["time" if name == "flips" else "predicted"] = timed.on_run_clock(values[number])
             elif name not in marked:
-                row[{"poses": "pose"}.get(name, name)] = values[number]
-        row["late"] = number in marked.get("late", ())
-        row["begins_stretch"] = number in marked.get("stretches", ())
+                row[SINGULAR.get(name, name)] = values[number]
+        if marked:
+            row["late"] = number in marked.get("late", ())
+            row["begins_stretch"] = number in marked.get("stretches", ())
         yield row

@@ -314,13 +314,13 @@ def test_responses_of_any_task_and_records_of_later_versions_are_exported_as_the
         if values["kind"] == "trial":
             values["response"] = {"chosen": "second", "correct": 1, "original": "first"}
         lines.append(_line(values))
-    lines.append(_line({"kind": "gaze", "time": 5.0, "part": "head", "samples": [1, 2, 3]}))
+    lines.append(_line({"kind": "pulse", "time": 5.0, "part": "ear", "samples": [1, 2, 3]}))
     journal.write_text("\n".join(lines) + "\n", encoding="utf-8")
     export(later, "csv", tmp_path / "out")
     rows = [row for row in rows_of(tmp_path / "out/trials.csv") if row["participant"] == "P02"]
     assert {(row["chosen"], row["correct"], row["step_frequency"]) for row in rows} == {("second", "1", "")}
-    (gaze,) = [row for row in rows_of(tmp_path / "out/events.csv") if row["event"] == "gaze"]
-    assert json.loads(gaze["details"]) == {"part": "head"}
+    (pulse,) = [row for row in rows_of(tmp_path / "out/events.csv") if row["event"] == "pulse"]
+    assert json.loads(pulse["details"]) == {"part": "ear"}
     assert all(psych_ds_problems(p) == [] for p in [_exported(later, tmp_path / "psych")])
 
 
@@ -334,3 +334,36 @@ def _line(values: dict) -> str:
 
     text = json.dumps(values, ensure_ascii=False, separators=(",", ":"))
     return f'{text[:-1]},"crc":"{zlib.crc32(text.encode()):08x}"}}'
+
+
+def test_frames_and_gaze_come_out_frame_by_frame_with_late_ones_marked(data, tmp_path):
+    """Three frames at 60 Hz, the last 40 ms after the second; the gaze of two of them."""
+    drawn = tmp_path / "data/walk_ratio"
+    shutil.copytree(data, drawn)
+    journal = drawn / "sourcedata/sub-P02/run-1/journal.jsonl"
+    trial = {"time": 9.0, "number": 1, "practice": False, "attempt": 1}
+    frames = {
+        "kind": "frames", **trial, "period": 1 / 60, "flips": [8.0, 8.0167, 8.0567], "predicted": [8.0, 8.0167, 8.0333],
+        "cpu_ms": [0.5, 0.6, 0.7], "poses": ["00000000", "00000001", "00000002"], "stretches": [0], "late": [2],
+    }  # fmt: skip
+    gaze = {
+        "kind": "gaze", **trial, "flips": [8.0, 8.0167], "x": [0.5, None], "y": [0.25, None],
+        "regions": ["legs", "unknown"], "joints": ["leftFoot", ""], "walkers": [0, -1],
+    }  # fmt: skip
+    with open(journal, "a", encoding="utf-8") as file:
+        file.write(f"{_line(frames)}\n{_line(gaze)}\n")
+    export(drawn, "csv", tmp_path / "out")
+    rows = rows_of(tmp_path / "out/frames.csv")
+    assert [(row["time"], row["late"], row["pose"]) for row in rows] == [
+        ("8.0", "false", "00000000"), ("8.0167", "false", "00000001"), ("8.0567", "true", "00000002"),
+    ]  # fmt: skip
+    looked = rows_of(tmp_path / "out/gaze.csv")
+    assert [(row["x"], row["region"]) for row in looked] == [
+        ("0.5", "legs"),
+        ("", "unknown"),
+    ]
+    export(drawn, "bids", tmp_path / "bids")
+    beside = json.loads(next((tmp_path / "bids").rglob("*recording-frames_stim.json")).read_text())
+    assert beside["SamplingFrequency"] == pytest.approx(60.0)
+    assert beside["StartTime"] == 8.0
+    assert psych_ds_problems(_exported(drawn, tmp_path / "psych")) == []
