@@ -7,6 +7,26 @@ import moderngl
 from experiment_app.render.programs import build
 
 
+def most_samples(context: moderngl.Context, wanted: int) -> int:
+    """The most samples per pixel, at most so many, with which the driver makes a half-float framebuffer; 1 is none.
+
+    What a driver reports holds for its best format; others may have fewer, so each number is tried.
+    """
+    for samples in range(min(wanted, context.max_samples), 1, -1):
+        parts: list[moderngl.Renderbuffer | moderngl.Framebuffer] = []
+        try:
+            parts.append(context.renderbuffer((4, 4), 4, samples=samples, dtype="f2"))
+            parts.append(context.depth_renderbuffer((4, 4), samples=samples))
+            parts.append(context.framebuffer(parts[:1], parts[1]))
+            return samples
+        except moderngl.Error:
+            continue
+        finally:
+            for part in reversed(parts):
+                part.release()
+    return 1
+
+
 class Picture:
     """A multisampled half-float framebuffer and what brings it to a screen.
 
@@ -15,7 +35,7 @@ class Picture:
 
     def __init__(self, context: moderngl.Context, size: tuple[int, int], samples: int) -> None:
         self._context = context
-        self.samples = max(1, min(samples, context.max_samples))
+        self.samples = most_samples(context, samples)
         self._program = build(context, "full_screen.vert", "encode.frag")
         self._triangle = context.vertex_array(self._program, [])
         self.size = (0, 0)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from experiment_app.render.picture import Picture
+from experiment_app.render.picture import Picture, most_samples
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Camera, Line, Marks, Page, Scene, Walker
 from experiment_app.walkers import drawn_walkers
@@ -87,3 +87,32 @@ def test_text_is_as_sharp_on_a_dense_display(context: moderngl.Context) -> None:
         target.release()
     assert halftones[0] > 500
     assert 1.2 < halftones[1] / halftones[0] < 2.7
+
+
+@pytest.mark.parametrize("wanted", [-1, 0, 1, 2, 4, 64])
+def test_samples_are_what_the_driver_can_make(wanted: int) -> None:
+    try:
+        fresh = moderngl.create_context(standalone=True, backend="egl", require=330)
+    except Exception as error:  # glcontext raises bare Exceptions
+        pytest.skip(f"no OpenGL 3.3 through EGL on this machine: {error}")
+    found = most_samples(fresh, wanted)
+    assert 1 <= found <= max(1, min(wanted, fresh.max_samples))
+    assert fresh.error == "GL_NO_ERROR"
+    fresh.release()
+
+
+def test_a_driver_that_boasts_is_not_believed(context: moderngl.Context) -> None:
+    """Reports 64 samples, makes framebuffers of two at most."""
+
+    class Boaster:
+        max_samples = 64
+
+        def renderbuffer(self, size: tuple[int, int], components: int, *, samples: int, dtype: str) -> object:
+            if samples > 2:
+                raise moderngl.Error("cannot create renderbuffer")
+            return context.renderbuffer(size, components, samples=samples, dtype=dtype)
+
+        def __getattr__(self, name: str) -> object:
+            return getattr(context, name)
+
+    assert most_samples(Boaster(), 8) == 2  # type: ignore[arg-type]
