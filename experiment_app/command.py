@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from fractions import Fraction
+from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -35,8 +36,9 @@ app.command(console)
 app.command(export)
 app.command(withdraw)
 
+SHIPPED = sorted(p.name.removesuffix(".yaml") for p in (files("protocols") / "studies").iterdir() if ".yaml" in p.name)
 StudyArgument = Annotated[
-    str, Parameter(help="A study file (YAML), or the name of a shipped study: walk_ratio, walk_ratio_actors.")
+    str, Parameter(help=f"A study file (YAML), or the name of a shipped study: {', '.join(SHIPPED)}.")
 ]
 
 
@@ -306,6 +308,7 @@ def power(
 
 @app.command
 def demo(
+    study: StudyArgument = "walk_ratio",
     *,
     folder: Annotated[Path, Parameter(help="Where the demo writes its data, pictures and report.")] = Path(
         "gaitlab-demo"
@@ -320,7 +323,7 @@ def demo(
     """
     from experiment_app.demo import run_demo
 
-    return run_demo(folder, off_screen=off_screen, say=_say, progress=_with_progress)
+    return run_demo(study, folder, off_screen=off_screen, say=_say, progress=_with_progress)
 
 
 @app.command

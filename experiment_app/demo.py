@@ -1,4 +1,4 @@
-"""`gaitlab demo`: the walk ratio study in a minute, with you at a screen or with a simulated participant without."""
+"""`gaitlab demo`: a study in a minute, with you at a screen or with a simulated participant without."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +19,14 @@ from experiment_app.loop import run_session
 from experiment_app.observer import SimulatedParticipant, draw_observer
 from experiment_app.opening import open_new
 from experiment_app.scene import Scene
+from experiment_app.short_study import short_study
 from experiment_app.simulate import simulate
 from experiment_app.windows.offscreen import OffscreenWindow
 from protocols.design import default_seed
 from protocols.plan import TrialStep
 from protocols.record import Record
 from protocols.session import begin
-from protocols.study_file import StudyFile, parse_study, read_study
+from protocols.study_file import StudyFile
 
 SIZE = (640, 360)
 FRAME_RATE = 6.0
@@ -37,28 +37,16 @@ FILM_RATE = 25.0
 PARTICIPANTS = 22
 SEED = 2022
 
-SHORT_PAGES: dict[str, Any] = {
-    "instructions": [
-        {
-            "title": "Your task",
-            "text": "Hold {lower} for fewer, longer steps and {raise} for more, shorter steps. When the walk looks "
-            "most natural to you, press {confirm}.\n\nPress Escape to pause or to stop.",
-        }
-    ],
-    "before_practice": {"title": "One trial to practise", "text": "Then eight trials follow."},
-}
-"""What the short version says instead, so that it is true of it."""
-
 Progress = Callable[[Iterator[Any], int, str], Iterator[Any]]
 
 
-def run_demo(folder: Path, *, off_screen: bool, say: Callable[[str], None], progress: Progress) -> int:
-    """Runs the demo into a folder that did not exist before, and says where everything is."""
+def run_demo(name: str, folder: Path, *, off_screen: bool, say: Callable[[str], None], progress: Progress) -> int:
+    """Runs the demo of a study into a folder that did not exist before, and says where everything is."""
     from analysis.planned import analyse
 
+    study = short_study(name)
     folder = _fresh(folder)
-    study = short_study()
-    if off_screen or not has_screen() or not _take_part(folder, say):
+    if off_screen or not has_screen() or not _take_part(study, folder, say):
         say("A simulated participant takes the study off-screen; every page and trial is drawn.")
         pictures = _watch_simulated(study, folder)
         say(f"  pages and a trial: {', '.join(p.name for p in pictures)} in {folder / 'pictures'}")
@@ -77,27 +65,6 @@ def run_demo(folder: Path, *, off_screen: bool, say: Callable[[str], None], prog
             say(f"  {path}")
     say(f"Report: {folder / 'report' / 'report.html'}")
     return 0
-
-
-def short_study() -> StudyFile:
-    """The walk ratio study with two actors, two speeds and one repetition: 2 x 2 x 2 = 8 trials."""
-    from ruamel.yaml import YAML
-
-    yaml = YAML(typ="rt")
-    document = yaml.load(read_study("walk_ratio").text)
-    document["study"] = "walk_ratio_demo"
-    document["factors"]["actor"] = ["F1", "M1"]
-    document["factors"]["speed"] = [0.8, 1.2]
-    document["repetitions"] = 1
-    document["practice"] = document["practice"][:1]
-    for page in ("before_practice", "instructions"):
-        document["pages"][page] = SHORT_PAGES[page]
-    del document["breaks"]
-    for test in document["analysis"]["t_tests"]:
-        test["against"] = {actor: test["against"][actor] for actor in ("F1", "M1")}
-    text = StringIO()
-    yaml.dump(document, text)
-    return parse_study("walk_ratio_demo.yaml", text.getvalue())
 
 
 def has_screen() -> bool:
@@ -120,13 +87,13 @@ def _fresh(folder: Path) -> Path:
     return chosen
 
 
-def _take_part(folder: Path, say: Callable[[str], None]) -> bool:
+def _take_part(study: StudyFile, folder: Path, say: Callable[[str], None]) -> bool:
     """The short study for the person at the screen; False when no window could be opened after all."""
     from experiment_app.errors import RunError
 
     say("Your turn: a short version of the study opens now. Press Escape to pause or to stop.")
-    file = folder / "walk_ratio_demo.yaml"
-    file.write_text(short_study().text, encoding="utf-8")
+    file = folder / study.name
+    file.write_text(study.text, encoding="utf-8")
     try:
         run_live(
             str(file), "YOU", folder / "your-data", screen=ScreenOptions(full_screen=False), seed=None,
@@ -148,7 +115,7 @@ def _watch_simulated(study: StudyFile, folder: Path) -> list[Path]:
     def look(_: float, scene: Scene, pixels: Callable[[], NDArray[np.uint8]]) -> None:
         name = _name(scene)
         seen[name] = seen.get(name, 0) + 1
-        if name and name not in saved and seen[name] >= (20 if scene.walkers else 2):
+        if name and name not in saved and seen[name] >= (20 if scene.visible else 2):
             saved[name] = folder / "pictures" / f"{name}.png"
             save_picture(pixels(), saved[name])
 
@@ -167,8 +134,10 @@ def _watch_simulated(study: StudyFile, folder: Path) -> list[Path]:
 
 def _name(scene: Scene) -> str:
     """A file name for what the scene shows, "" for an empty screen."""
-    if scene.page is None:
+    if scene.visible and (scene.page is None or scene.page.strip):
         return "trial"
+    if scene.page is None:
+        return ""
     if not scene.page.lines:
         return ""
     words = "".join(c if c.isalnum() else " " for c in scene.page.lines[0].text.lower()).split()
@@ -195,10 +164,11 @@ def film_trial(study: StudyFile, folder: Path) -> None:
     frames: list[NDArray[np.uint8]] = []
 
     def keep(_: float, scene: Scene, pixels: Callable[[], NDArray[np.uint8]]) -> None:
-        if scene.walkers:
+        if scene.visible:
             frames.append(pixels())
 
     with OffscreenWindow(person, lambda: None, FILM_SIZE, FILM_RATE, keep) as window:
         run_session(begin(plan), window, _Forgetful())
-    save_strip(frames[: int(2 * FILM_RATE)], folder / "trial-strip.png")
+    count, share = (4, 1.0) if len(trial.order) > 1 else (8, 0.42)  # two walks need the whole width
+    save_strip(frames[: int(2 * FILM_RATE)], folder / "trial-strip.png", count, share)
     save_film(frames, FILM_RATE, folder / "trial.webp")

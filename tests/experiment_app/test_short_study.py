@@ -1,0 +1,20 @@
+"""The demo's short versions of the shipped studies."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from experiment_app.check import checked_study
+from experiment_app.short_study import short_study
+from protocols.design import make_trials
+from protocols.study_file import shipped_studies
+
+
+@pytest.mark.parametrize("name", shipped_studies())
+def test_every_shipped_study_has_a_short_version_without_mistakes(name, tmp_path):
+    short = short_study(name)
+    (tmp_path / short.name).write_text(short.text, encoding="utf-8")
+    assert checked_study(str(tmp_path / short.name)).study == short.study
+    assert len(make_trials(short.study, 1)) == math.prod(map(len, short.study.factors.values())) <= 16
