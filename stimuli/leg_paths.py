@@ -35,6 +35,13 @@ and a forward sway once per cycle are told apart only while both feet are on the
 CLOSING = 0.15
 """Share of swing in which a captured foot comes on to its footprint."""
 
+LOWERED = 0.14
+"""Share of swing, the last, in which the foot comes down; above the ground as long as it still moves ahead."""
+
+WITHIN_REACH = 0.03
+"""Share of swing, the last, in which the foot need not stay where its leg reaches: the hips still come nearer to where
+it will stand. Any longer and the knee would snap straight."""
+
 BUILT_REACH = 0.9996
 """Largest hip-ankle distance over leg length in a cycle as built (knee bent 3.2 degrees); blending needs the rest."""
 
@@ -150,8 +157,8 @@ def foot_channels(leg: Leg, path: LegPath, hips: Hips, stride: float) -> Floats:
         return np.interp(phases, np.append(PHASES, 1.0), np.append(values, values[0]))
 
     carried = own + path.hip[:, 1:] + path.vector  # ankle (up, forward) if the leg had its way
-    leave = contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / 0.18)
-    low, high = (contact.smooth_step((1.0 - swing) / before) for before in (0.18, 0.6))
+    leave = contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / LOWERED)
+    low, high = (contact.smooth_step((1.0 - swing) / before) for before in (LOWERED, 0.6))
     least = LEAST_CLEARANCE * contact.smooth_step(swing / 0.07) * (LATE_SHARE * low + (1.0 - LATE_SHARE) * high)
     clearance = least + leave * _soft_positive(on_clock(carried[:, 0] - foot.ankle[:, 1]) - least)
 
@@ -164,7 +171,7 @@ def foot_channels(leg: Leg, path: LegPath, hips: Hips, stride: float) -> Floats:
     joint = on_clock(own[:, 1] + path.hip[:, 2])
     places = [(joint + sign * far - rolled) / stride - course for sign in (-1.0, 1.0)]
     travel = _smoothed(np.where(swing > 0.0, np.clip(travel, *places), 0.0)) * _swing_window(swing)
-    bounded = contact.smooth_step(swing / 0.1) * contact.smooth_step((1.0 - swing) / 0.08)
+    bounded = contact.smooth_step(swing / 0.1) * contact.smooth_step((1.0 - swing) / WITHIN_REACH)
     travel = travel + bounded * (np.clip(travel, *places) - travel)
     channels = {
         "pitch": on_clock(contact.wanted_pitch(foot.pitch)),

@@ -73,9 +73,11 @@ def test_fitting_again_gives_the_same_coefficients(tmp_path):
 def test_people_left_out_of_the_fit_are_foretold_within_some_degrees():
     pytest.importorskip("ezc3d")
     from stimuli.fitting.gait_model import read_all
-    from stimuli.fitting.validation import left_out_errors
+    from stimuli.fitting.validation import error_lines, left_out_errors
 
     errors = left_out_errors(*read_all(SHARED))
+    documented = (Path(__file__).parents[2] / "docs" / "actors.md").read_text(encoding="utf-8").splitlines()
+    assert set(error_lines(errors)) <= set(documented)
     assert errors["thigh"][0] < 3.0
     assert errors["shank"][0] < 3.0
     assert errors["foot"][0] < 4.5
