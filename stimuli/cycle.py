@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from stimuli.clip import Clip, FootEvent, world_pose
 from stimuli.events import GaitError, GaitMeasures, find_events, foot_paths, measure_paths
@@ -206,6 +205,8 @@ def _sampled(closed: Floats, sample: Floats, time: float) -> Floats:
     spectrum = np.fft.rfft(frames, axis=0) * gain.reshape(-1, *[1] * (closed.ndim - 1))
     smooth = np.fft.irfft(spectrum, n=len(frames), axis=0)
     looped = np.concatenate([smooth, smooth[:1]])
+    from scipy.interpolate import CubicSpline  # here, because showing made cycles needs none of it
+
     return np.asarray(CubicSpline(np.linspace(0.0, 1.0, len(looped)), looped, bc_type="periodic")(sample))
 
 

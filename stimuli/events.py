@@ -15,7 +15,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import butter, find_peaks, sosfiltfilt
 
 from stimuli.clip import Clip, FootEvent, world_positions
 from stimuli.gait import Gait
@@ -188,6 +187,8 @@ def _peaks(values: Floats, rate: float) -> list[int]:
 
     Beyond its ends the curve counts as low, so the first and last frame can be maxima.
     """
+    from scipy.signal import find_peaks  # here and below, because showing made cycles needs none of SciPy
+
     low = np.min(values)
     distance = max(int(LEAST_STRIDE_TIME * rate), 1)
     peaks, _ = find_peaks(np.concatenate([[low], values, [low]]), prominence=np.ptp(values) / 3, distance=distance)
@@ -203,6 +204,8 @@ def _vertex(values: Floats, peak: int) -> float:
 
 def _low_pass(values: Floats, cutoff: float, rate: float) -> Floats:
     """Zero-lag 2nd-order Butterworth along the first axis, cut-off at most 0.4 of the rate."""
+    from scipy.signal import sosfiltfilt
+
     sections = _sections(min(cutoff, 0.4 * rate) / (rate / 2))
     padding = min(len(values) - 1, int(1.5 * rate / min(cutoff, 0.4 * rate)) + 3)
     return sosfiltfilt(sections, values, axis=0, padlen=padding)
@@ -211,6 +214,8 @@ def _low_pass(values: Floats, cutoff: float, rate: float) -> Floats:
 @cache
 def _sections(cutoff: float) -> Floats:
     """2nd-order Butterworth low-pass; cutoff as a share of half the rate. Its design costs more than its use."""
+    from scipy.signal import butter
+
     return np.asarray(butter(2, cutoff, output="sos"))
 
 

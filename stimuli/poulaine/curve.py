@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from stimuli.cycle import Cycle, cycle_positions
 from stimuli.methods.making import MethodError
 from stimuli.skeleton import Floats
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 FOUR: tuple[str, ...] = ("E", "V", "I", "A")
 """Points of Pronost et al. (2005), in the order in which a foot passes them from heel strike."""
@@ -48,6 +51,8 @@ class Poulaine:
     def spline(self) -> CubicSpline:
         """Phase -> (x, z) m through every sample, periodic."""
         closed = np.concatenate([self.xz, self.xz[:1]])
+        from scipy.interpolate import CubicSpline  # here, because most studies show no rebuilt walks
+
         return CubicSpline(np.linspace(0.0, 1.0, len(closed)), closed, bc_type="periodic")
 
 

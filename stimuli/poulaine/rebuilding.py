@@ -7,7 +7,6 @@ made to meet. Knows points, no cycle.
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline, CubicSpline, PchipInterpolator
 
 from stimuli.poulaine.curve import FIVE, FOUR, ControlPoints, Poulaine, PoulaineError, characteristic_points
 from stimuli.skeleton import Floats
@@ -21,6 +20,8 @@ def rebuilt(points: ControlPoints, interpolation: str, phases: Floats) -> Floats
     interpolation: "cubic" (periodic cubic, twice differentiable), "pchip" (monotonic between points; Fritsch &
     Butland 1984) or "hermite" (places and first derivatives of the points).
     """
+    from scipy.interpolate import CubicHermiteSpline, CubicSpline, PchipInterpolator
+
     if interpolation not in INTERPOLATIONS:
         raise PoulaineError(f"there is no interpolation {interpolation!r}; there are {', '.join(INTERPOLATIONS)}")
     order = np.argsort(points.phases)
