@@ -77,7 +77,8 @@ def _on_screen(display: int, keys: bool) -> Timing:
 
 def _injected(window: DesktopWindow) -> dict[str, Any] | None:
     """How far the stamps of injected keys were off; None where keys cannot be injected."""
-    from experiment_app.injected_keys import can_inject, measure_keys
+    from experiment_app.injected_keys import measure_keys
+    from experiment_app.key_injector import can_inject
 
     if not can_inject():
         return None

@@ -1,33 +1,23 @@
-"""Keys pressed by a program at known times, through the X server's test extension, to measure how keys are stamped.
-
-`python -m experiment_app.injected_keys COUNT` waits for a line on standard input, presses a key that no study uses
-COUNT times at random moments and prints the times as JSON. A process of its own, so that what is measured cannot
-delay it.
-"""
+"""How far the times of keys are off: keys are injected at known times while a window draws, and the stamps compared."""
 
 from __future__ import annotations
 
-import ctypes
-import ctypes.util
-import json
-import os
-import sys
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from random import Random
 from statistics import median, quantiles
-from subprocess import PIPE, Popen
 from typing import TYPE_CHECKING, cast
 
-from experiment_app.windows.xlib import xlib
+from experiment_app.key_injector import Injector, Step
 from protocols.events import KeyDown, KeyUp
 from protocols.session import Session
 
 if TYPE_CHECKING:
     from experiment_app.windows.desktop import DesktopWindow
 
-KEY, KEYSYM = "key-345", 0xFFE4  # the right Control key, which no study uses
+KEY, KEYSYM = "key-345", 0xFFE4
+"""The right Control key, which no study uses: its name here, and X's number for it."""
+
 SPACING = (0.08, 0.14)
 """s from one press to the next, uniform."""
 
@@ -42,12 +32,13 @@ NOBODY = cast(Session, None)
 class KeyErrors:
     """How far the stamps of injected keys were off, ms: stamp minus the moment just before the injection.
 
-    presses, releases: of every event. once_per_frame: the errors of a program that stamps presses when it asks for
-    them, once per frame, in the same run. injected: keys pressed; lost, doubled: presses without or beside a stamp.
+    pressed_at: those moments (s, `time.perf_counter`). presses, releases: of every event that arrived.
+    once_per_frame: the errors of a program that stamps presses when it asks for them, once per frame, in the same run.
+    lost, doubled: presses without a stamp, and stamps without a press of their own.
     """
 
     source: str
-    injected: int
+    pressed_at: tuple[float, ...]
     presses: tuple[float, ...]
     releases: tuple[float, ...]
     once_per_frame: tuple[float, ...]
@@ -55,10 +46,10 @@ class KeyErrors:
     doubled: int
 
     def summary(self) -> dict[str, object]:
-        """For a journal or a certificate: medians and 90th percentiles of the absolute errors."""
+        """For a certificate: the median error and the 90th percentile of its size."""
         return {
             "source": self.source,
-            "presses": self.injected,
+            "presses": len(self.pressed_at),
             "lost": self.lost,
             "doubled": self.doubled,
             "median_ms": round(median(self.presses), 3) if self.presses else None,
@@ -71,35 +62,6 @@ def percentile_90(values: Sequence[float]) -> float:
     return quantiles(values, n=10, method="inclusive")[-1] if len(values) > 1 else values[0]
 
 
-def can_inject() -> bool:
-    """Whether this computer has an X server and the library of its test extension."""
-    return bool(os.environ.get("DISPLAY") and ctypes.util.find_library("Xtst"))
-
-
-def inject(count: int) -> list[tuple[float, float]]:
-    """Presses the key `count` times; the moments (s, `time.perf_counter`) just before each press and release."""
-    x11 = xlib()
-    tests = ctypes.CDLL(ctypes.util.find_library("Xtst") or "libXtst.so.6")
-    tests.XTestFakeKeyEvent.argtypes = [ctypes.c_void_p, ctypes.c_uint, ctypes.c_int, ctypes.c_ulong]
-    display = x11.XOpenDisplay(None)
-    keycode = x11.XKeysymToKeycode(display, KEYSYM)
-
-    def press(down: bool, at: float) -> float:
-        time.sleep(max(at - time.perf_counter() - 0.001, 0.0))
-        while (now := time.perf_counter()) < at:
-            pass
-        tests.XTestFakeKeyEvent(display, keycode, down, 0)
-        x11.XFlush(display)
-        return now
-
-    random = Random(1)
-    times, at = [], time.perf_counter() + 0.2
-    for _ in range(count):
-        at += random.uniform(*SPACING)
-        times.append((press(True, at), press(False, at + random.uniform(*HELD))))
-    return times
-
-
 def measure_keys(window: DesktopWindow, show: Callable[[], object], count: int) -> KeyErrors:
     """Injects `count` presses while `show` draws frame after frame in the window, and compares the stamps.
 
@@ -108,16 +70,12 @@ def measure_keys(window: DesktopWindow, show: Callable[[], object], count: int) 
     down: list[KeyDown] = []
     up: list[KeyUp] = []
     polled: list[float] = []
-    command = [sys.executable, "-m", "experiment_app.injected_keys", str(count)]
-    with Popen(command, stdin=PIPE, stdout=PIPE, text=True) as injector:
-        assert injector.stdin is not None
-        assert injector.stdout is not None
-        injector.stdin.write("go\n")
-        injector.stdin.flush()
-        ended = None
-        while ended is None or window.now() < ended + 0.3:
-            if ended is None and injector.poll() is not None:
-                ended = window.now()
+    with Injector() as injector:
+        injector.begin(_presses(count))
+        times, ended = injector.times(), 0.0
+        while times is None or window.now() < ended + 0.3:
+            if times is None:
+                times, ended = injector.times(), window.now()
             now, events = window.poll(NOBODY)
             for event in events:
                 if isinstance(event, KeyDown) and event.key == KEY:
@@ -126,42 +84,47 @@ def measure_keys(window: DesktopWindow, show: Callable[[], object], count: int) 
                 elif isinstance(event, KeyUp) and event.key == KEY:
                     up.append(event)
             show()
-        said = injector.stdout.read()
-        if injector.returncode:
-            raise OSError("keys cannot be injected here")
-    times = [(press - window.origin, release - window.origin) for press, release in json.loads(said)]
-    return _compared(times, down, up, polled)
-
-
-def _compared(
-    times: Sequence[tuple[float, float]], down: Sequence[KeyDown], up: Sequence[KeyUp], polled: Sequence[float]
-) -> KeyErrors:
-    """The errors of the events that belong to injected ones: the first within half a spacing of each."""
-    pressed = [_belonging(at, [event.time for event in down]) for at, _ in times]
-    released = [_belonging(at, [event.time for event in up]) for _, at in times]
-    found = [index for index in pressed if index is not None]
-    ms = 1e3
+    pressed = [moment - window.origin for moment in times[0::2]]
+    released = [moment - window.origin for moment in times[1::2]]
+    presses = matched(pressed, [event.time for event in down])
     return KeyErrors(
         source=down[0].source if down else "none",
-        injected=len(times),
-        presses=tuple(ms * (down[i].time - at) for i, (at, _) in zip(pressed, times, strict=True) if i is not None),
-        releases=tuple(ms * (up[i].time - at) for i, (_, at) in zip(released, times, strict=True) if i is not None),
-        once_per_frame=tuple(ms * (polled[i] - at) for i, (at, _) in zip(pressed, times, strict=True) if i is not None),
-        lost=len(times) - len(set(found)),
-        doubled=len(down) - len(set(found)),
+        pressed_at=tuple(times[0::2]),
+        presses=_errors(pressed, [event.time for event in down], presses),
+        releases=_errors(released, [event.time for event in up], matched(released, [event.time for event in up])),
+        once_per_frame=_errors(pressed, polled, presses),
+        lost=presses.count(None),
+        doubled=len(down) - len(set(presses) - {None}),
     )
 
 
-def _belonging(at: float, stamps: Sequence[float]) -> int | None:
-    nearest = min(range(len(stamps)), key=lambda i: abs(stamps[i] - at), default=None)
-    return nearest if nearest is not None and abs(stamps[nearest] - at) < SPACING[0] / 2 else None
+def _presses(count: int) -> list[Step]:
+    random = Random(1)
+    steps: list[Step] = []
+    held = 0.0
+    for _ in range(count):
+        steps.append((KEYSYM, True, random.uniform(*SPACING) - held))
+        held = random.uniform(*HELD)
+        steps.append((KEYSYM, False, held))
+    return steps
 
 
-def main() -> None:
-    """Waits for the word, then injects."""
-    sys.stdin.readline()
-    print(json.dumps(inject(int(sys.argv[1]))))
+def matched(moments: Sequence[float], stamps: Sequence[float]) -> list[int | None]:
+    """For every moment (s) the number of its stamp; None where there is none.
+
+    As many stamps as moments belong to them in order, even when the whole computer stood still for a while; else a
+    moment's stamp is the nearest within half a spacing.
+    """
+    if len(stamps) == len(moments):
+        return list(range(len(moments)))
+    found: list[int | None] = []
+    for moment in moments:
+        nearest = min(range(len(stamps)), key=lambda i: abs(stamps[i] - moment), default=None)
+        near = nearest is not None and abs(stamps[nearest] - moment) < SPACING[0] / 2
+        found.append(nearest if near else None)
+    return found
 
 
-if __name__ == "__main__":
-    main()
+def _errors(moments: Sequence[float], stamps: Sequence[float], found: Sequence[int | None]) -> tuple[float, ...]:
+    """ms: stamp minus moment, where there is a stamp."""
+    return tuple(1e3 * (stamps[i] - at) for at, i in zip(moments, found, strict=True) if i is not None)

@@ -16,6 +16,7 @@ from tests.benchmarks.importing import importing
 from tests.benchmarks.measuring import fastest, machine, row
 from tests.benchmarks.methods import methods
 from tests.benchmarks.poses import poses
+from tests.benchmarks.timing import timing
 
 
 def analysis_of_the_thesis() -> None:
@@ -34,26 +35,6 @@ def analysis_of_the_thesis() -> None:
     row("ANOVA of 22 x 96 rows", fastest(lambda: anova(data, "walk_ratio", "participant", within, "sex"), 15), 0.015)
     q, df = np.linspace(0.1, 9, 918), np.linspace(20, 200, 918)
     row("918 Tukey p values", fastest(lambda: survival(q, 24, df), 3), 1.0)
-
-
-def frame() -> None:
-    """Our own work in a frame of an adjustment trial; 16 x 9 pixels, so that the driver has next to nothing to do."""
-    from experiment_app.render.renderer import Renderer
-    from experiment_app.scene import Scene, Walker
-    from experiment_app.walkers import drawn_walkers
-    from experiment_app.windows.offscreen import offscreen_context
-
-    context = offscreen_context()
-    target = context.simple_framebuffer((16, 9))
-    renderer = Renderer(context, (16, 9), 1.0, 1)
-    phases = iter(range(10**9))
-
-    def draw() -> None:
-        scene = Scene((Walker("F1", 1.0, 87.0, next(phases) / 997.0 % 1.0),))
-        renderer.draw(scene, drawn_walkers(scene), target)
-
-    draw()
-    row(f"CPU of our thread per frame, one walker ({context.info['GL_RENDERER'][:20]})", fastest(draw, 7, 60), 1e-3)
 
 
 def simulation() -> None:
@@ -80,12 +61,16 @@ def help_text() -> None:
     row("gaitlab --help (wall, whole process)", min(start() for _ in range(5)), 0.4)
 
 
-def main() -> None:
-    """Prints the machine and every figure."""
+def main(arguments: list[str]) -> None:
+    """Prints the machine and every figure; `timing [PRESSES]` prints those of timing alone."""
     print(machine())
-    for benchmark in (help_text, poses, methods, importing, frame, simulation, analysis_of_the_thesis):
+    if arguments[:1] == ["timing"]:
+        help_text()
+        timing(int(arguments[1]) if arguments[1:] else 300)
+        return
+    for benchmark in (help_text, poses, methods, importing, timing, simulation, analysis_of_the_thesis):
         benchmark()
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])
