@@ -14,7 +14,8 @@ import pandas as pd
 
 from analysis.errors import AnalysisError, listed
 from analysis.plan import plan_of
-from analysis.simulated_experiments import clipped_shares, experiment_model
+from analysis.simulated_adjusters import Adjusters
+from analysis.simulated_experiments import experiment_model
 from analysis.simulation_power import as_dict, combine_power, power_by_simulation, simulated_t_tests
 from analysis.writing import write_bytes
 
@@ -111,24 +112,29 @@ def power_notes(study: Mapping[str, Any] | str | Path) -> list[str]:
     """What a reader of the table must know: where the range of the task cuts answers off, what is not simulated."""
     loaded = as_dict(study)
     model = experiment_model(loaded)
-    names = list(dict.fromkeys(map(str, loaded["factors"].get(model.plan.actor[1:], [model.plan.actor]))))
-    shares = clipped_shares(model)
-    high = shares[shares["share"] > CLIPPING].sort_values("share", ascending=False)
     notes = ["Post hoc tests, equivalence tests and exclusions are not simulated."]
     left = [test.each for test in model.plan.t_tests if test not in simulated_t_tests(model.plan)]
     if left:
         notes.append(
             f"The t tests of every {listed(left)} are not simulated: the analysis of variance has no cell of it."
         )
-    if len(high):
-        found = [f"{names[int(r.actor)]} at {r.speed:g} m/s ({100 * r.share:.0f} %)" for r in high.itertuples()]
-        notes.insert(
-            0,
-            f"The range of {model.lowest:g} to {model.highest:g} steps/min cuts off answers: {listed(found)}. Such "
-            "answers cannot follow the observers' preference, which makes effects of speed that nobody has; widen "
-            "task.range or change the speeds.",
-        )
+    if isinstance(model.observers, Adjusters):
+        names = list(dict.fromkeys(map(str, loaded["factors"].get(model.plan.actor[1:], [model.plan.actor]))))
+        notes = [*_clipping(model.observers, names, len(model.design.subjects)), *notes]
     return notes
+
+
+def _clipping(observers: Adjusters, names: Sequence[str], people: int) -> list[str]:
+    shares = observers.clipped_shares(people)
+    high = shares[shares["share"] > CLIPPING].sort_values("share", ascending=False)
+    if not len(high):
+        return []
+    found = [f"{names[int(r.actor)]} at {r.speed:g} m/s ({100 * r.share:.0f} %)" for r in high.itertuples()]
+    return [
+        f"The range of {observers.lowest:g} to {observers.highest:g} steps/min cuts off answers: {listed(found)}. Such "
+        "answers cannot follow the observers' preference, which makes effects of speed that nobody has; widen "
+        "task.range or change the speeds."
+    ]
 
 
 def dask_client(address: str) -> Any:

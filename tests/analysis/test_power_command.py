@@ -13,7 +13,7 @@ import pytest
 from analysis import AnalysisError
 from analysis.many_anovas import many_anovas
 from analysis.power_study import join_parts, power_notes, read_part, simulate_power
-from analysis.simulated_experiments import cell_means_of, clipped_shares, experiment_model
+from analysis.simulated_experiments import cell_means_of, experiment_model
 from analysis.simulation_power import as_dict
 from experiment_app.command import run
 from tests.analysis.recorded import study_text
@@ -86,7 +86,7 @@ def test_the_range_cuts_answers_off_where_walkers_are_slow_or_fast() -> None:
     assert "F1 at 1.2 m/s" in power_notes(study_text())[0]
     study = dict(as_dict(study_text()))
     study["task"] = {**study["task"], "range": {"minimum": 30, "maximum": 240}}
-    assert clipped_shares(experiment_model(study))["share"].max() < 0.001
+    assert experiment_model(study).observers.clipped_shares(22)["share"].max() < 0.001
     assert not any("cuts off" in note for note in power_notes(study))
 
 
