@@ -23,6 +23,8 @@ KERB_WIDTH = 0.18
 HOUSES_AT = STREET_HALF_WIDTH + 3.5  # m from the middle of the street
 DEPTH = 12.0  # m of a house, behind its front
 
+FLOORS = 4  # of every house; a bare wall above a low neighbour's roof would catch the eye
+
 STONE = (0.330, 0.322, 0.308)
 GRANITE = (0.420, 0.415, 0.405)
 ROOF = (0.210, 0.205, 0.200)
@@ -75,10 +77,9 @@ def _houses() -> list[tuple[float, float, float, tuple[float, float, float], int
         if STRETCH - start - width < 9.0:
             width = STRETCH - start
             bays = round(width / 2.8)
-        floors = rng.choice((3, 4, 4))
         tone = rng.choice([i for i in range(len(PLASTERS)) if i != before])
         before = tone
-        houses.append((start, width, floors * rng.uniform(3.1, 3.5) + 0.7, PLASTERS[tone], bays, floors))
+        houses.append((start, width, FLOORS * rng.uniform(3.15, 3.40) + 0.7, PLASTERS[tone], bays, FLOORS))
         start += width
     return houses
 
