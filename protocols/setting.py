@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Discriminator, Field, Tag, TypeAdapter, ValidationError
+from pydantic import BeforeValidator, Discriminator, Field, Tag, TypeAdapter, ValidationError
 
 from protocols.mistake import Mistake, Place, no_such
 from protocols.parts import Level, Number, Part, Reference, Speed, StepFrequency, Text
@@ -25,18 +25,18 @@ def kind_of(value: Any) -> str:
     return FACTOR if isinstance(value, str) and value.startswith("$") else CONSTANT
 
 
-def _one_factor(table: dict[str, dict[Level, Any]]) -> dict[str, dict[Level, Any]]:
+def _one_factor(table: Any) -> Any:
     """Refuses what is no table, also further inside, where pydantic does not look."""
-    ((factor, values),) = table.items() if len(table) == 1 else [("", {})]
-    if not factor.startswith("$") or not isinstance(values, Mapping) or not values:
+    factor, values = next(iter(table.items())) if len(table) == 1 else ("", {})
+    if not isinstance(factor, str) or not factor.startswith("$") or not isinstance(values, Mapping) or not values:
         raise ValueError("a table names one factor and its levels, as {$speed: {0.8: ..., 1.2: ...}}")
     for value in values.values():
         if isinstance(value, Mapping):
-            _one_factor(dict(value))
+            _one_factor(value)
     return table
 
 
-Table = Annotated[dict[str, dict[Level, Any]], AfterValidator(_one_factor)]
+Table = Annotated[dict[str, dict[Level, Any]], BeforeValidator(_one_factor)]
 by_form = Discriminator(kind_of)
 AsFactor = Annotated[Reference, Tag(FACTOR)]
 AsTable = Annotated[Table, Tag(TABLE)]
@@ -89,6 +89,9 @@ def leaves(setting: Any, place: Place, factors: Mapping[str, list[Level]]) -> It
             yield from leaves(value, (*place, factor, level), factors)
 
 
+LIMITS = {"ge": "at least", "gt": "more than", "le": "at most", "lt": "less than"}
+"""Limits of numbers, as pydantic calls them, in words."""
+
 Given = tuple[Any, Place, Any]
 """A setting, its place, and the type of its values."""
 
@@ -127,6 +130,9 @@ def unfit(value: Any, kind: Any, where: Place, place: Place) -> Iterator[Mistake
             yield Mistake(where, f"{value!r} is not a number, and {name} takes it from here")
         elif found["type"] == "greater_than" and found["ctx"]["gt"] == 0.0:
             yield Mistake(where, f"{value} must be more than 0")
+        elif set(found.get("ctx", {})) & LIMITS.keys():
+            limits = " and ".join(f"{LIMITS[name]} {limit:g}" for name, limit in found["ctx"].items() if name in LIMITS)
+            yield Mistake(where, f"{value} is out of range; for {name} it must be {limits}")
         elif found["type"] == "literal_error":
             yield Mistake(where, f"{value} is not allowed for {name}; allowed: {found['ctx']['expected']}")
         else:

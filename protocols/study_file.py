@@ -19,7 +19,7 @@ from typing import Annotated, Any, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from protocols.mistake import Mistake, Place
-from protocols.setting import CONSTANT, FACTOR, TABLE
+from protocols.setting import CONSTANT, FACTOR, LIMITS, TABLE
 from protocols.study import Study
 
 MISSING = "this key is missing"
@@ -189,8 +189,7 @@ def _explain(error: Any, document: Any) -> Mistake:
     if kind == "missing":
         return Mistake(where, MISSING, on_key=True)
     if kind in ("greater_than_equal", "greater_than", "less_than_equal", "less_than"):
-        words = {"ge": "at least", "gt": "more than", "le": "at most", "lt": "less than"}
-        limit = " and ".join(f"{words[k]} {v:g}" for k, v in limits.items() if k in words)
+        limit = " and ".join(f"{LIMITS[k]} {v:g}" for k, v in limits.items() if k in LIMITS)
         return Mistake(where, f"{shown} is out of range; it must be {limit}")
     if kind in ("literal_error", "union_tag_invalid"):
         expected = str(limits.get("expected") or limits.get("expected_tags")).replace("'", "")
@@ -203,7 +202,8 @@ def _explain(error: Any, document: Any) -> Mistake:
         return Mistake(where, f"{shown} does not fit; letters, digits and _ only, starting with a letter")
     if kind in ("too_short", "too_long"):
         return Mistake(where, f"needs {error['msg'].split('should have ')[-1]}")
-    message = error["msg"][0].lower() + error["msg"][1:]
+    said = error["msg"].removeprefix("Value error, ")
+    message = said[0].lower() + said[1:]
     return Mistake(where, f"{shown}: {message.replace('input should be', 'must be')}")
 
 

@@ -1,0 +1,90 @@
+"""Mistakes in choice and rating studies: each is named with its place and what is allowed."""
+
+from __future__ import annotations
+
+import pytest
+
+from experiment_app.check import checked_study
+from protocols.consistency import inconsistencies
+from protocols.study_file import StudyFileError, parse_study, read_study
+
+
+def said(tmp_path, name: str, *replacements: tuple[str, str]) -> str:
+    """What is said about a shipped study with texts replaced; "" when nothing is wrong."""
+    text = read_study(name).text
+    for old, new in replacements:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    path = tmp_path / "s.yaml"
+    path.write_text(text, encoding="utf-8")
+    try:
+        checked_study(str(path))
+    except StudyFileError as error:
+        return str(error)
+    return ""
+
+
+CHOICE = [
+    ("original: captured ", "original: capturd ", "task.original: capturd is no alternative; did you mean captured?"),
+    ("side_by_side", "one_after_the_other", "one after the other needs time_limit"),
+    ("first: left", "first: right", "right is also the key for first"),
+    ("first: left", "first: escape", "escape is kept for the pause page"),
+    ("kind: choice", "kind: choise", "did you mean choice?"),
+    ("arrangement: side", "arangement: side", "unknown key; did you mean arrangement?"),
+    ("    rebuilt:\n      making:", "    rebuilt:\n      makings:", "unknown key; did you mean making?"),
+    ("source_speed: $speed", "source_sped: $speed", "unknown key; did you mean source_speed?"),
+    ("points: $points", "points: $ponts", "did you mean $points?"),
+    ("points: [4, 5] ", "points: [4, 6] ", "6 is not allowed for task.alternatives.rebuilt.making.points; allowed: 4"),
+    ("[cubic, pchip, hermite]\nrep", "[cubic, linear, hermite]\nrep", "linear is not allowed for task.alternatives"),
+    ("source_speed: $speed", "source_speed: {$speed: {0.88: 0.7, 1.06: 0.88}}", "a value for 1.24 is missing"),
+    ("source_speed: $speed", "source_speed: {$sped: {0.88: 0.7}}", "did you mean $speed?"),
+    ("source_speed: $speed", "source_speed: {0.88: 0.7}", "a table names one factor and its levels"),
+    ("source_speed: $speed", "source_speed: 5", "5 is out of range; it must be at most 3"),
+    ("method: captured}", "method: captured, style: sadd}", "there is no style sadd; did you mean sad?"),
+    ("measure: confusion_rate", "measure: walk_ratio", "walk_ratio is not what choice trials give; they give"),
+    ("4: 0.14", "4: 1.4", "1.4 is out of range; for simulation.choice.confusion it must be at most 1"),
+    ("speed: 1.06, points: 4, interpolation: cubic", "speed: 1.06, points: 4", "interpolation is missing"),
+    ("speed: [0.88, 1.06, 1.24] ", "speed: [0.88, 1.06, 2.4] ", "factors.speed[2]"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "sentence"), CHOICE)
+def test_a_mistake_in_a_choice_study_is_one_sentence(tmp_path, old, new, sentence):
+    lines = said(tmp_path, "poulaine_reconstruction", (old, new)).split("\n")
+    assert any(sentence in line for line in lines), lines
+    assert lines[0].startswith(f"{tmp_path / 's.yaml'}:")
+
+
+RATING = [
+    ("minimum: 0, maximum: 4", "minimum: 4, maximum: 4", "minimum 4 is not below maximum 4"),
+    ("step: 1,", "step: 3,", "steps of 3 do not lead from 0 to 4"),
+    ("step: 1,", "step: 0.1,", "41 points are too many; at most 21, or step: null"),
+    ("sad_2: F2, ", "", "stimulus.actor.$pair: a value for sad_2 is missing"),
+    ("confirm: enter", "confirm: r", "r is also the key for confirm"),
+    ("low: not realistic, ", "", "task.scale.low: this key is missing"),
+    ("body: stick_figure", "body: stick_figur", "did you mean stick_figure?"),
+    ("drunken: 1.60, ", "", "a value for drunken is missing"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "sentence"), RATING)
+def test_a_mistake_in_a_rating_study_is_one_sentence(tmp_path, old, new, sentence):
+    lines = said(tmp_path, "fourier_naturalness", (old, new)).split("\n")
+    assert any(sentence in line for line in lines), lines
+
+
+def test_a_choice_needs_two_alternatives(tmp_path):
+    text = read_study("poulaine_reconstruction").text
+    start, end = text.index("    rebuilt:\n"), text.index("  original:")
+    study = parse_study("s.yaml", text[:start] + text[end:]).study
+    assert any("a choice needs two alternatives" in mistake.message for mistake in inconsistencies(study))
+
+
+def test_a_continuous_scale_needs_no_steps(tmp_path):
+    assert said(tmp_path, "fourier_naturalness", ("step: 1,", "step: null,")) == ""
+
+
+def test_a_table_may_go_on_inside_and_is_checked_there_too(tmp_path):
+    assert said(tmp_path, "speed_editing") == ""
+    inside = said(tmp_path, "speed_editing", ("0.88: 0.70, 1.06", "0.88: brisk, 1.06"))
+    assert "source_speed.$direction.sped_up.$speed.0.88: 'brisk' is not a number" in inside
