@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from stimuli.gait_model import Step, load_gait_model
+from stimuli.gait_model import SIGNALS, Step, load_gait_model
 from stimuli.importing.errors import ImportingError
-from stimuli.importing.signals import evened
 from stimuli.importing.walks import CapturedWalk, read_walk
 from stimuli.methods.styles import Style
 from stimuli.motion_files.reading import read_clip
@@ -25,15 +24,16 @@ def captured_style(name: str, file: Path, normal: Path | None, licence: str, sou
     a clip that makes no walk.
     """
     walk = read_walk(file, _shared_rest(file, normal))
-    shift, tempo = _residual(walk), 1.0
+    shift, tempo, late = _residual(walk), 1.0, walk.curves.left_strike - 0.5
     whose = f"captured in {file.name}"
     if normal is not None:
         own = read_walk(normal)
         shift = shift - _residual(own)
+        late = walk.curves.left_strike - own.curves.left_strike
         tempo = float(np.sqrt(own.gait.walk_ratio / walk.gait.walk_ratio))  # SF = sqrt(60 v / WR)
         whose += f" against {normal.name}"
     provenance = f"{whose}; licence: {licence}; source: {source}"
-    return Style(name, np.ones(len(shift)), np.nan_to_num(shift), tempo, provenance)
+    return Style(name, np.ones(len(SIGNALS)), np.nan_to_num(shift), tempo, late, provenance)
 
 
 def _shared_rest(file: Path, normal: Path | None) -> RestPose | None:
@@ -53,6 +53,6 @@ def _shared_rest(file: Path, normal: Path | None) -> RestPose | None:
 
 
 def _residual(walk: CapturedWalk) -> Floats:
-    """(S, C) signals, both sides averaged, less the model's at the same step; nan where the capture holds none."""
+    """(2, S, C) signals of both sides less the model's at the same step; nan where the capture holds none."""
     step = Step.of(walk.gait.speed, walk.gait.step_frequency, walk.leg_length)
-    return np.asarray(evened(walk.curves.sides)[0] - load_gait_model().coefficients(step))
+    return np.asarray(walk.curves.sides - load_gait_model().coefficients(step))

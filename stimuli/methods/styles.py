@@ -33,8 +33,9 @@ class Style:
     """A way of walking as a change of any walk of the gait model.
 
     gain:           (S,) by which each signal's harmonics are multiplied
-    shift:          (S, C) rad or leg lengths added to each signal's coefficients
+    shift:          (2, S, C) rad or leg lengths added to the coefficients of the left and the right side's signals
     step_frequency: times the actor's own at the same speed
+    left_strike:    share of the cycle by which the left foot strikes later than in the actor's own walk
     provenance:     "made from the gait model", or of which captures it is, with licence and source
     """
 
@@ -42,13 +43,17 @@ class Style:
     gain: Floats
     shift: Floats
     step_frequency: float = 1.0
+    left_strike: float = 0.0
     provenance: str = "made from the gait model"
 
-    def applied(self, coefficients: Floats) -> Floats:
-        """(..., S, C) coefficients of a walk, in this style."""
-        changed = coefficients * self.gain[:, None]
-        changed[..., 0] = coefficients[..., 0]
-        return np.asarray(changed + self.shift)
+    def applied(self, walk: WalkCurves) -> WalkCurves:
+        """The walk in this style."""
+        changed = walk.sides * self.gain[:, None]
+        changed[..., 0] = walk.sides[..., 0]
+        return replace(walk, sides=changed + self.shift, left_strike=walk.left_strike + self.left_strike)
+
+
+_SIDES = {"": slice(None), "left": slice(0, 1), "right": slice(1, 2)}
 
 
 @cache
@@ -58,12 +63,15 @@ def default_styles() -> dict[str, Style]:
     found: dict[str, Style] = {}
     for row in csv.DictReader(line for line in text.splitlines() if not line.startswith("#")):
         name = row["style"]
-        style = found.setdefault(name, Style(name, np.ones(len(SIGNALS)), np.zeros((len(SIGNALS), COEFFICIENTS))))
+        style = found.setdefault(name, Style(name, np.ones(len(SIGNALS)), np.zeros((2, len(SIGNALS), COEFFICIENTS))))
         if row["signal"] == "step_frequency":
             found[name] = replace(style, step_frequency=float(row["gain"]))
             continue
+        if row["signal"] == "left_strike":
+            found[name] = replace(style, left_strike=float(row["shift"]))
+            continue
         for signal in _signals(row["signal"]):
-            style.shift[signal, 0] += float(row["shift"] or 0.0)
+            style.shift[_SIDES[row["side"]], signal, 0] += float(row["shift"] or 0.0)
             style.gain[signal] *= float(row["gain"] or 1.0)
     return found
 
@@ -93,12 +101,13 @@ def read_style(name: str) -> Style:
     try:
         with np.load(path, allow_pickle=False) as content:
             shift = content["shift"].astype(np.float64)
-            if shift.shape != (len(SIGNALS), COEFFICIENTS) or not np.isfinite(shift).all():
+            if shift.shape != (2, len(SIGNALS), COEFFICIENTS) or not np.isfinite(shift).all():
                 raise ValueError(f"coefficients of shape {shift.shape}")
-            step_frequency, provenance = float(content["step_frequency"]), str(content["provenance"])
+            tempo, late = float(content["step_frequency"]), float(content["left_strike"])
+            provenance = str(content["provenance"])
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise MethodError(f"{path} is damaged or of another version of gaitlab ({error}); import it again") from None
-    return Style(name, np.ones(len(SIGNALS)), shift, step_frequency, provenance)
+    return Style(name, np.ones(len(SIGNALS)), shift, tempo, late, provenance)
 
 
 def store_style(style: Style, replace_old: bool = False) -> Path:
@@ -108,7 +117,13 @@ def store_style(style: Style, replace_old: bool = False) -> Path:
     if style.name in imported_styles() and not replace_old:
         raise MethodError(f"there is a style {style.name} already; choose another name, or say --replace")
     path = _folder() / f"{style.name}.npz"
-    write_whole(path, shift=style.shift, step_frequency=style.step_frequency, provenance=np.array(style.provenance))
+    write_whole(
+        path,
+        shift=style.shift,
+        step_frequency=style.step_frequency,
+        left_strike=style.left_strike,
+        provenance=np.array(style.provenance),
+    )
     return path
 
 
@@ -124,7 +139,7 @@ def styled(actor: Actor, name: str) -> Actor:
     """
     style = style_named(name)
     cycles = [
-        walk_cycle(actor.figure, replace(walk, sides=style.applied(walk.sides)), speed, frequency)
+        walk_cycle(actor.figure, style.applied(walk), speed, frequency)
         for walk, speed, frequency in _ingredients(actor)
     ]
     return replace(

@@ -25,16 +25,16 @@ def _library(tmp_path, monkeypatch):
 
 
 def style(name="lab7_calm"):
-    shift = np.zeros((len(SIGNALS), COEFFICIENTS))
-    shift[SIGNALS.index("head_x"), 0] = 0.25
-    return Style(name, np.ones(len(SIGNALS)), shift, 0.9, "captured in a.bvh; licence: CC BY 4.0; source: lab 7")
+    shift = np.zeros((2, len(SIGNALS), COEFFICIENTS))
+    shift[:, SIGNALS.index("head_x"), 0] = 0.25
+    return Style(name, np.ones(len(SIGNALS)), shift, 0.9, 0.02, "captured in a.bvh; licence: CC BY 4.0; source: lab 7")
 
 
 def test_what_is_stored_is_read_back_and_worn():
     store_style(style())
     read = read_style("lab7_calm")
     np.testing.assert_array_equal(read.shift, style().shift)
-    assert (read.step_frequency, read.provenance) == (0.9, style().provenance)
+    assert (read.step_frequency, read.left_strike, read.provenance) == (0.9, 0.02, style().provenance)
     assert style_names()[-1] == "lab7_calm"
     actor = load_actor("F2")
     assert "licence: CC BY 4.0" in styled(actor, "lab7_calm").provenance
@@ -67,7 +67,7 @@ def test_a_damaged_file_is_one_sentence(tmp_path, content):
 def test_a_normal_walk_has_no_style_against_itself():
     own = captured_style("none", NORMAL, NORMAL, "CC BY-NC 4.0", "Bandai Namco Research")
     np.testing.assert_allclose(own.shift, 0.0, atol=1e-12)
-    assert own.step_frequency == 1.0
+    assert (own.step_frequency, own.left_strike) == (1.0, 0.0)
 
 
 @needs_captures
@@ -96,7 +96,7 @@ def test_the_sad_performer_looks_down_steps_seldom_and_so_does_whoever_walks_lik
     assert run(["style", "list"]) == 0
     assert "licence: CC BY-NC 4.0; source: Bandai Namco Research" in capfd.readouterr().out
     sad = read_style("bandai_sad")
-    assert sad.shift[SIGNALS.index("head_x"), 0] > 0.3  # rad, looking down
+    assert sad.shift[1, SIGNALS.index("head_x"), 0] > 0.3  # rad, looking down
     assert sad.step_frequency < 1.0
 
 

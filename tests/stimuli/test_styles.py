@@ -62,6 +62,18 @@ def test_styles_do_what_their_names_say(actor):
     assert hurried > made_walk(actor, OWN, SPEED).step_frequency > cool
 
 
+def test_the_two_steps_of_the_drunken_walk_differ_and_those_of_the_sad_one_do_not(actor):
+    """What makes it the worst in figure 5: two successive steps are very different from each other."""
+
+    def step_times(name):
+        places = joints(actor, Making(style=name))
+        strikes = [np.argmax(places[:, JOINTS.index(f"{side}Foot"), 2]) / len(places) for side in ("right", "left")]
+        return (strikes[1] - strikes[0]) % 1.0
+
+    assert step_times("sad") == pytest.approx(0.5, abs=0.01)
+    assert abs(step_times("drunken") - 0.5) > 0.02
+
+
 def test_more_harmonics_come_nearer_to_the_style(actor):
     original = made_walk(actor, Making(style="drunken"), SPEED).cycle
     errors = [
