@@ -179,6 +179,9 @@ def _disagreements(runs: list[RecordedRun]) -> list[str]:
             f"The runs were recorded with {len(hashes)} versions of the study file; the plan stored with "
             f"{runs[0].participant}'s run is followed. {listed(odd)} had another version."
         )
+    pilot = [run.participant for run in runs if run.header.get("pilot")]
+    if pilot:
+        found.append(f"These are pilot runs ({listed(pilot)}), recorded to try the study out; they are no results.")
     simulated = [run.participant for run in runs if run.header.get("simulated")]
     if simulated and len(simulated) < len(runs):
         found.append(

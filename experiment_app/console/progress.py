@@ -107,7 +107,8 @@ def status(watched: Watched) -> str:
         if watched.paused
         else watched.doing
     )
-    return (
+    line = (
         f"{watched.participant}  {len(watched.done)} of {watched.total} trials{about}  "
         f"{watched.late} of {watched.frames} frames late  {now}"
     )
+    return "".join(sign if sign.isprintable() else " " for sign in line)

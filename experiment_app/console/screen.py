@@ -45,7 +45,8 @@ def panel(watching: Watching, watched: Watched, silent: float, told: str) -> Pan
     hint = told or "p pause   r go on   s stop   q leave the console (the run goes on)"
     title = f"{watching.title}: participant {watching.run.participant}, {kind}run {watching.run.number}"
     return Panel(
-        Group(facts, Text("\nLast responses", style="bold"), responses, Text(f"\n{hint}", style="dim")), title=title
+        Group(facts, Text("\nLast responses", style="bold"), responses, Text(f"\n{hint}", style="dim")),
+        title=Text(title),
     )
 
 

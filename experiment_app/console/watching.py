@@ -16,8 +16,9 @@ class Watching:
 
     def __init__(self, run: Run) -> None:
         self.run = run
-        self.title = recorded_plan(run).study.title
-        self.watched = Watched(recorded_plan(run).total)
+        plan = recorded_plan(run)
+        self.title = plan.study.title
+        self.watched = Watched(plan.total)
         self._place = 0
 
     def look(self) -> Watched:

@@ -118,6 +118,23 @@ def test_too_few_participants_still_get_their_tables(tmp_path: Path, participant
     assert "cannot be run" in outcome.report.read_text(encoding="utf-8")
 
 
+def test_pilot_runs_are_called_pilot_runs(tmp_path: Path) -> None:
+    from analysis.journal import read_study
+
+    folder = write_study(tmp_path / "s", 2)
+    for journal in folder.glob("sourcedata/sub-*/run-*/journal.jsonl"):
+        lines = journal.read_text(encoding="utf-8").splitlines()
+        journal.write_text("\n".join([_as_pilot(lines[0]), *lines[1:]]) + "\n", encoding="utf-8")
+    assert any("pilot runs" in warning for warning in read_study(folder).warnings)
+
+
+def _as_pilot(line: str) -> str:
+    from protocols.record import Header, decode_line, encode_line
+
+    values = {name: value for name, value in decode_line(line).items() if name != "kind"}
+    return encode_line(Header(**{**values, "pilot": True}))
+
+
 def test_unfinished_declined_and_withdrawn_runs_are_left_out_and_named(tmp_path: Path) -> None:
     folder = write_study(tmp_path / "s", 4)
     write_run(folder, "P05", journal_lines("P05", 5, reason=None, trials=30))

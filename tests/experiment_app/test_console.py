@@ -249,3 +249,16 @@ def test_a_real_run_is_paused_resumed_and_stopped_from_another_process(tmp_path,
     finally:
         process.kill()
         process.communicate()
+
+
+def test_a_title_or_a_level_cannot_write_on_the_terminal_what_it_likes(tmp_path):
+    """Markup of the terminal library, and control characters, come out as text or not at all."""
+    play(opened(tmp_path))
+    watching = Watching(newest_run(tmp_path / "walk_ratio"))
+    watching.look()
+    watching.title = "[/] [red]A title[/red]"
+    console = Console(file=io.StringIO(), width=120)
+    console.print(panel(watching, watching.watched, 0.0, ""))
+    assert "[red]A title" in console.file.getvalue()  # type: ignore[attr-defined]
+    line = {"kind": "begin", "time": 1.0, "number": 1, "practice": False, "attempt": 1, "factors": {"a": "\x1b[2J\r\n"}}
+    assert status(after(Watched(3, "P01"), line)).isprintable()

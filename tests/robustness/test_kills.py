@@ -8,7 +8,7 @@ from tests.robustness.killing import kill_sessions
 
 
 @pytest.mark.parametrize(
-    ("kills", "seed"), [pytest.param(4, 1, id="4"), pytest.param(40, 2, id="40", marks=pytest.mark.slow)]
+    ("kills", "seed"), [pytest.param(3, 1, id="3"), pytest.param(20, 2, id="20", marks=pytest.mark.slow)]
 )
 def test_kills_at_random_moments_lose_no_acknowledged_trial_and_double_none(tmp_path, kills, seed):
     """`python -m tests.benchmarks.kills 200` kills as often as one likes."""
