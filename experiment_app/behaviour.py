@@ -86,9 +86,9 @@ def choose(observer: Observer, trial: ChoiceTrial, levels: Mapping[str, Level], 
     """Confuses the original with the other as often as its population does in this condition, and takes its time."""
     chooser = observer.simulation.choice
     confusion = float(_known(chooser.confusion, levels, 0.5))
-    original = trial.task.original or next(iter(trial.viewing.walks))
-    confused = rng.random() < _shifted(confusion, chooser.spread * observer.leaning)
     first = next(iter(trial.viewing.walks))
+    original = trial.task.original or first
+    confused = rng.random() < _shifted(confusion, chooser.spread * observer.leaning)
     key = trial.keys["first" if (original == first) != confused else "second"]
     seconds = float(_known(chooser.response_time, levels, 3.0))
     own = math.exp(chooser.pace_spread * observer.pace + chooser.time_spread * rng.gauss(0.0, 1.0))
@@ -157,7 +157,7 @@ def _tapped(time: float, key: str) -> tuple[Event, Event]:
 
 def _unseen(viewing: Viewing) -> float:
     """s from onset until every walk has appeared."""
-    return 0.0 if viewing.every_one_seen else viewing.start_of(-1)
+    return viewing.start_of(-1)
 
 
 def _known(setting: Any, levels: Mapping[str, Level], otherwise: float) -> Any:

@@ -75,7 +75,8 @@ class ChoiceTrial:
     def response(self) -> Mapping[str, Level]:
         """chosen; where it and the other were; original and whether it was chosen (1 or 0); views.
 
-        side: left or right, first or second. Empty before the choice.
+        side: left or right, first or second. decision_time: s since both had appeared, of walks one after the other.
+        Empty before the choice.
         """
         if not self.done:
             return {}
@@ -85,6 +86,8 @@ class ChoiceTrial:
         response |= {place: name for name, place in where.items()}
         if self.task.original:
             response |= {"original": self.task.original, "correct": int(self.chosen == self.task.original)}
+        if places is PLACES:
+            response["decision_time"] = self.looked - self.viewing.waited
         return response | {"views": self.viewing.view}
 
     @property

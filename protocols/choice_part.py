@@ -32,9 +32,9 @@ class Choice(PairPart):
     """Two-alternative forced choice: which of two walks."""
 
     responses: ClassVar[tuple[str, ...]] = (
-        "chosen", "side", "left", "right", "first", "second", "original", "correct", "views",
+        "chosen", "side", "left", "right", "first", "second", "original", "correct", "decision_time", "views",
     )  # fmt: skip
-    measures: ClassVar[tuple[str, ...]] = ("confusion_rate", "correct", "response_time")
+    measures: ClassVar[tuple[str, ...]] = ("confusion_rate", "correct", "response_time", "decision_time")
 
     kind: Literal["choice"]
     original: Name | None = Field(

@@ -31,18 +31,23 @@ class Showing:
 class Viewing:
     """How much of a trial's alternatives has been seen.
 
-    walks: name to walk, from left to right or first to last.
-    view:  which view this is, from 1; time: s of it so far.
+    walks:    name to walk, from left to right or first to last.
+    view:     which view this is, from 1; time: s of it so far.
+    complete: every alternative had appeared before now; waited: s until then (summed over views).
     """
 
     showing: Showing
     walks: Mapping[str, Walk]
     view: int = 1
     time: float = 0.0
+    complete: bool = False
+    waited: float = 0.0
 
     def after(self, elapsed: float) -> Viewing:
         """The viewing `elapsed` s later."""
-        return replace(self, time=self.time + elapsed)
+        left = 0.0 if self.complete else max(self.start_of(-1) - self.time, 0.0)
+        later = replace(self, time=self.time + elapsed, waited=self.waited + min(elapsed, left))
+        return replace(later, complete=later.every_one_seen)
 
     @property
     def may_repeat(self) -> bool:
@@ -56,10 +61,12 @@ class Viewing:
     @property
     def every_one_seen(self) -> bool:
         """True once every alternative has appeared."""
-        return self.view > 1 or self.showing.arrangement == "side_by_side" or self.time >= self.start_of(-1)
+        return self.complete or self.time >= self.start_of(-1)
 
     def start_of(self, index: int) -> float:
-        """s into a view at which an alternative of a succession appears."""
+        """s into a view at which an alternative appears."""
+        if self.showing.arrangement == "side_by_side":
+            return 0.0
         index = range(len(self.walks))[index]
         return index * ((self.showing.time_limit or 0.0) + self.showing.gap)
 
@@ -69,8 +76,7 @@ class Viewing:
         limit = self.showing.time_limit
         seen = []
         for index, (name, walk) in enumerate(self.walks.items()):
-            start = 0.0 if self.showing.arrangement == "side_by_side" else self.start_of(index)
-            time = self.time - start
+            time = self.time - self.start_of(index)
             if time >= 0.0 and (limit is None or time < limit):
                 seen.append(Seen(walk, name, time, walk.speed * time))
         return tuple(seen)

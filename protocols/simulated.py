@@ -15,8 +15,8 @@ class ChoosingObservers(SettingsPart):
 
     confusion: ProbabilitySetting = Field(
         0.5,
-        description="Probability that a middling observer chooses another than the original (without one: than the "
-        "alternative named first).",
+        description="Probability that a middling observer chooses another than the original; without one, the right or "
+        "second one.",
     )
     response_time: SecondsSetting = Field(3.0, description="Median, s, once every alternative can be seen.")
     spread: float = Field(0.3, strict=True, ge=0.0, le=5.0, description="S.d. between participants, logit.")

@@ -236,7 +236,7 @@ class FurtherAnalysis(Part):
 
     measure: Literal[
         "walk_ratio", "step_frequency", "step_length", "response_time", "normalised_walk_ratio", "confusion_rate",
-        "correct", "rating", "gaze_share",
+        "correct", "decision_time", "rating", "gaze_share",
     ] = Field(
         "walk_ratio",
         description="normalised_walk_ratio needs heights; confusion_rate (%) and correct (0 or 1) need trials in which "

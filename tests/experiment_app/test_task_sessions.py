@@ -17,6 +17,7 @@ from protocols.events import Clicked, KeyDown, Shown
 from protocols.plan import TrialStep, make_plan
 from protocols.record import Click, Key, TrialRecord
 from protocols.session import Progress, Session, advance, begin, drained, handle, remaining
+from protocols.study_file import parse_study
 from tests.experiment_app.test_loop import Disk, Display
 from tests.protocols.studies import edited, few_choices
 
@@ -87,6 +88,16 @@ def test_a_rated_pair_is_in_step():
     left, right = scene.everyone
     assert left.phase == pytest.approx(right.phase, abs=1e-9)
     assert left.step_frequency == pytest.approx(right.step_frequency)
+
+
+def test_one_walk_alone_can_be_rated_in_the_whole_picture():
+    file = edited("fourier_naturalness")
+    start, end = file.text.index("    original:\n"), file.text.index("    synthetic:")
+    text = file.text[:start] + file.text[end:].replace("style: *style", "style: sad")
+    scene = stage(at_a_trial(parse_study("one.yaml", text).study))
+    assert (len(scene.walkers), scene.beside) == (1, None)
+    assert scene.page is not None
+    assert scene.page.rows[0].slider is not None
 
 
 def test_one_after_the_other_shows_one_walk_then_nothing_then_the_other():
@@ -162,8 +173,6 @@ def test_a_staircase_on_choices_settles_where_seven_in_ten_are_right(tmp_path):
     text += f"simulation:\n  choice: {{confusion: {confusion}, spread: 0.0}}\n"
     text = text.replace("{method: timewarp, actor: T1,", "{level: 5, method: timewarp, actor: T1,")
     text = text.replace("{method: blend, actor: T2,", "{level: 5, method: blend, actor: T2,")
-    from protocols.study_file import parse_study
-
     (run,) = simulate(parse_study("stairs.yaml", text), 1, tmp_path)
     lines = [line for line in journal_lines(run.journal)[0] if line["kind"] == "trial" and not line["practice"]]
     assert len(lines) == 160

@@ -69,8 +69,9 @@ def test_one_after_the_other_shows_first_gap_second_and_hears_a_choice_only_then
     ]  # fmt: skip
     early = pressed(trial, (12.1, "left"))
     assert (early.done, early.counts["early_confirms"]) == (False, 1)
-    chosen = pressed(early, (12.6, "left"))
-    assert chosen.response["side"] == "first"
+    chosen = pressed(early, (13.1, "left"))
+    assert (chosen.response["side"], chosen.looked) == ("first", pytest.approx(3.1))
+    assert chosen.response["decision_time"] == pytest.approx(0.6)  # the second appeared at 12.5 s
 
 
 def test_a_walk_begins_anew_when_it_is_its_turn():
@@ -88,6 +89,14 @@ def test_replay_begins_another_view_as_often_as_is_allowed():
     assert twice.viewing.view == 2
     assert names(twice, 18.1) == []
     assert pressed(twice, (19.0, "right")).response["views"] == 2
+
+
+def test_seeing_the_first_walk_again_is_not_seeing_the_second():
+    trial = started(Showing("one_after_the_other", time_limit=2.0, gap=0.5, views=None))
+    again = pressed(trial, (11.0, "r"), (12.0, "left"))
+    assert not again.done
+    chosen = pressed(again, (14.0, "left"))  # the second appeared 2.5 s after the replay, at 13.5 s
+    assert chosen.response["decision_time"] == pytest.approx(0.5)
 
 
 def test_a_choice_before_the_minimum_looking_time_is_counted_and_refused():
