@@ -44,6 +44,7 @@ def drawn_crowd(crowd: Crowd) -> DrawnCrowd:
     rows[:, 63, 1] = 0.0
     rows[:, 63, 2] = places[:, 1] + (END - cast.plan.length)
     rows[:, 63, 3] = np.arange(crowd.size)
+    matrices[..., 3] += rows[:, 63, :3][:, None]
     ends = np.minimum(places[:, 1] / FADING[0], (cast.plan.length - places[:, 1]) / FADING[1])
     return DrawnCrowd(cast.look, rows, np.minimum(ends, 1.0))
 

@@ -26,7 +26,7 @@ GIRTHS: dict[str, dict[str, float]] = {
     | {f"{side}{part}": 1.1 for side in ("left", "right") for part in ("UpperLeg", "LowerLeg", "UpperArm", "LowerArm")},
 }
 
-COARSE = ((0.12, 3), (0.22, 2), (0.40, 2))
+COARSE = ((0.12, 3), (0.24, 2), (0.45, 2))
 """Of each further level of detail: side of its cubes (m) and how many joints carry a vertex."""
 
 

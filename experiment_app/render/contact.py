@@ -66,7 +66,7 @@ def crowd_occluders(crowd: DrawnCrowd, there: NDArray[np.intp]) -> Floats:
     joints = 3 * _JOINTS[_OF_CROWDS][:, None] + np.arange(3)
     matrices = crowd.rows[there[:, None, None], joints]
     rows[:, 0, :3], rows[:, 0, 3] = places, CROWD_HALF_SIZE * statures
-    rows[:, 1:, :3] = (matrices @ _crowd_balls(crowd.cast)[there])[..., 0] + places[:, None]
+    rows[:, 1:, :3] = (matrices @ _crowd_balls(crowd.cast)[there])[..., 0]
     rows[:, 1:, 3] = _RADII[_OF_CROWDS] * statures[:, None]
     return rows
 

@@ -15,24 +15,28 @@ from numpy.typing import NDArray
 from experiment_app.render.cameras import NEAR, Viewpoint
 from stimuli.skeleton import Floats
 
-HEIGHTS = np.array([500.0, 230.0, 76.0, 45.0, 26.0])
+HEIGHTS = np.array([500.0, 230.0, 95.0, 55.0, 32.0])
 """Pixels of stature below which the next coarser level is drawn."""
 
 MIDDLE = 0.9  # m above the ground, about the middle of a person
 
-BAND = 0.07
+BAND = 0.05
 """Share of a threshold on either side of it within which both levels are drawn."""
 
 FAR_LEVEL = 3
-"""Finest of the levels made for crowds: lit at their vertices, at most three joints to a vertex."""
+"""Finest of the levels made for crowds; who is drawn in it or smaller is lit at the vertices."""
 
 
 @dataclass(frozen=True)
 class Batch:
-    """Instances drawn together: count of them from first, of one body and level; faded ones test every pixel."""
+    """Instances drawn together: count of them from first, of one body and level.
+
+    far: small on the screen, so lit at their vertices; faded: in a share of their pixels only.
+    """
 
     body: int
     level: int
+    far: bool
     faded: bool
     first: int
     count: int
@@ -88,11 +92,12 @@ def seen_instances(
     low = np.concatenate([np.zeros(len(there)), share[both]])
     high = np.minimum(np.concatenate([share, np.ones(len(both))]), shown[rows])
     faded = (low > 0.0) | (high < 1.0)
-    key = (body[rows] * levels + level) * 2 + faded
+    far = (heights[rows] < HEIGHTS[FAR_LEVEL - 1] * (1.0 + BAND)) | (level >= FAR_LEVEL)
+    key = (body[rows] * levels + level) * 4 + 2 * far + faded
     order = np.argsort(key, kind="stable")
     table = np.column_stack([rows, low, high, look[rows]])[order].astype(np.float32)
     batches = (
-        Batch(int(value) // 2 // levels, int(value) // 2 % levels, bool(value % 2), first, count)
+        Batch(value // 4 // levels, value // 4 % levels, value % 4 >= 2, value % 2 == 1, first, count)
         for value, first, count in _runs(key[order])
     )
     return Instances(table, tuple(batches))
@@ -106,7 +111,7 @@ def shadow_instances(heights: Floats, casting: NDArray[np.bool_], body: NDArray[
     order = np.argsort(key, kind="stable")
     table = np.zeros((len(rows), 4), np.float32)
     table[:, 0] = rows[order]
-    batches = (Batch(int(v) // levels, int(v) % levels, False, first, count) for v, first, count in _runs(key[order]))
+    batches = (Batch(v // levels, v % levels, True, False, first, count) for v, first, count in _runs(key[order]))
     return Instances(table, tuple(batches))
 
 

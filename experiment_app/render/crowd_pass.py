@@ -10,7 +10,6 @@ import numpy as np
 from experiment_app.render.body_buffers import LIT_FORMAT, LIT_NAMES, SHADOW_FORMAT, SHADOW_NAMES, finishes_of, packed
 from experiment_app.render.cameras import Viewpoint, as_uniform
 from experiment_app.render.crowd_levels import (
-    FAR_LEVEL,
     Instances,
     distances,
     heights_on_screen,
@@ -26,7 +25,7 @@ from experiment_app.render.shadow_map import set_light
 
 POSES_UNIT, INSTANCES_UNIT, PALETTE_UNIT = 0, 7, 8
 CROWD = {**ON_CROWDS, "CROWD": "1"}
-FAR = {**CROWD, "INFLUENCES": "3", "SHADOW_TAPS": "1"}
+FAR = {**CROWD, "SHADOW_TAPS": "1"}
 HAZE, FADED = {"OPEN_GROUND": "1", "HAZE": "1"}, {"FADED": "1"}
 SHADED = 75.0  # m from the eye, beyond which the haze leaves little of a shadow
 
@@ -114,7 +113,7 @@ class CrowdPass:
         set_if_used(program, "instances", INSTANCES_UNIT)
         array = self._meshes.arrays[program]
         for batch in instances.batches:
-            if only is None or only == (batch.level >= FAR_LEVEL, batch.faded):
+            if only is None or only == (batch.far, batch.faded):
                 first, count = self._meshes.parts[batch.body][batch.level]
                 program["first_walker"].value = batch.first
                 array.render(moderngl.TRIANGLES, vertices=count, first=first, instances=batch.count)
@@ -149,6 +148,7 @@ class CrowdMeshes:
             self.parts.append([])
             for surfaces in body.levels:
                 own, triangles = packed(surfaces, [numbers[surface.name] for surface in surfaces])
+                _heaviest_first(own)
                 vertices.append(own)
                 indices.append(triangles.ravel() + np.uint32(first_vertex))
                 self.parts[-1].append((first_index, triangles.size))
@@ -171,6 +171,13 @@ class CrowdMeshes:
         """Frees the GPU's memory."""
         for part in (*self.arrays.values(), self._vertices, self._indices, self.palette):
             part.release()
+
+
+def _heaviest_first(vertices: np.ndarray) -> None:
+    """Orders each vertex's joints by weight, so that the shader can stop at the first that carries nothing."""
+    order = np.argsort(-vertices["weights"], axis=1, kind="stable")
+    for name in ("weights", "joints"):
+        vertices[name] = np.take_along_axis(vertices[name], order, axis=1)
 
 
 def _table(context: moderngl.Context, columns: int, rows: int) -> moderngl.Texture:

@@ -52,7 +52,8 @@ class CrowdLook:
 class DrawnCrowd:
     """A crowd at one instant.
 
-    rows:  (N, 64, 4) float32: the matrices as of a DrawnWalker (21 x 3 rows), then place (m) and number.
+    rows:  (N, 64, 4) float32: 21 x 3 rows of matrices from a vertex of the bind pose to the world, then the walker's
+           place (x, y, z m) and number.
     shown: (N,) 0 to 1, how much of each is there: less near the ends of the stretch the crowd walks.
     """
 

@@ -12,6 +12,7 @@ import time
 from itertools import product
 from pathlib import Path
 
+from tests.benchmarks.crowds import drawing, own_work, rivals
 from tests.benchmarks.importing import importing
 from tests.benchmarks.measuring import fastest, machine, row
 from tests.benchmarks.methods import methods
@@ -62,14 +63,16 @@ def help_text() -> None:
 
 
 def main(arguments: list[str]) -> None:
-    """Prints the machine and every figure; `timing [PRESSES]` prints those of timing alone."""
+    """Prints the machine and every figure, or those named, as `poses drawing rivals`; `timing [PRESSES]` alone."""
     print(machine())
     if arguments[:1] == ["timing"]:
         help_text()
         timing(int(arguments[1]) if arguments[1:] else 300)
         return
-    for benchmark in (help_text, poses, methods, importing, timing, simulation, analysis_of_the_thesis):
-        benchmark()
+    first = (help_text, poses, methods, importing, timing, simulation, analysis_of_the_thesis)
+    for benchmark in (*first, own_work, drawing, rivals):
+        if not arguments or benchmark.__name__ in arguments:
+            benchmark()
 
 
 if __name__ == "__main__":

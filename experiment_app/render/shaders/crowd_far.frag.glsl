@@ -1,7 +1,9 @@
 #version 330 core
+#ifdef FADED
 #include "dither.glsl"
-centroid in vec3 colour;
 flat in vec2 drawn_in;
+#endif
+centroid in vec3 colour;
 layout(location = 0) out vec4 pixel;
 
 void main() {

@@ -16,7 +16,9 @@ in float occlusion;
 in uint material;
 
 centroid out vec3 colour;             // inside the triangle also at its edges, or it may leave 0 .. 1
+#ifdef FADED
 flat out vec2 drawn_in;                 // of the screen's noise
+#endif
 
 void main() {
     vec4 x_row, y_row, z_row;
@@ -28,7 +30,9 @@ void main() {
     gl_Position = world_to_clip * vec4(world, 1.0);
 
     vec4 instance = texelFetch(instances, ivec2(first_walker + gl_InstanceID, 0), 0);
+#ifdef FADED
     drawn_in = instance.yz;
+#endif
     vec3 albedo = texelFetch(palette, ivec2(int(material), int(instance.w + 0.5)), 0).rgb;
     vec4 finish = finishes[material];
     vec3 to_eye = normalize(eye - world);

@@ -34,13 +34,20 @@ void blend_matrix(out vec4 x_row, out vec4 y_row, out vec4 z_row) {
     for (int i = 0; i < INFLUENCES; i++) {
         int texel = int(joints[i]) * 3;
         float weight = weights[i];
+#ifdef CROWD
+        if (weight == 0.0) break;  // the heaviest come first, and most vertices have one or two joints
+#endif
         x_row += weight * texelFetch(poses, ivec2(texel, walker), 0);
         y_row += weight * texelFetch(poses, ivec2(texel + 1, walker), 0);
         z_row += weight * texelFetch(poses, ivec2(texel + 2, walker), 0);
     }
 }
 
+// Where the walker's matrices lead from; those of crowds lead into the world.
 vec3 walker_place() {
+#ifdef CROWD
+    return vec3(0.0);
+#endif
     return texelFetch(poses, ivec2(PLACE_TEXEL, walker_row()), 0).xyz;
 }
 
