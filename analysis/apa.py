@@ -28,7 +28,9 @@ def figures(value: float, significant: int = 3) -> str:
 
 
 def degrees(df: float) -> str:
-    """Whole degrees of freedom as they are, corrected ones with three figures: 3, 1.80, 36.2."""
+    """Whole degrees of freedom as they are, corrected ones with three figures: 3, 1.80, 36.2; a dash for none."""
+    if not math.isfinite(df):
+        return "–"
     return f"{df:.0f}" if abs(df - round(df)) < 1e-9 else figures(df)
 
 

@@ -106,12 +106,15 @@ def _answered(used: pd.DataFrame, plan: AnalysisPlan, condition: str, each: tupl
 
 
 def _tested(person: pd.DataFrame, measure: str, against: float) -> pd.DataFrame:
-    """One-sample t tests of participants' values in every level, in the order of the levels."""
-    order = {"level": list(person["level"].cat.categories)} if hasattr(person["level"], "cat") else None
-    if person["level"].nunique() == 1:
-        table = t_tests(person, measure, "participant", against=against)
-        return table.assign(level=str(person["level"].iloc[0]))
-    return t_tests(person, measure, "participant", each="level", against=against, levels=order)
+    """One-sample t tests of participants' values in every level, in order; no t where there is one participant."""
+    rows = []
+    for level, part in person.groupby("level", observed=True, sort=True):
+        if len(part) > 1:
+            row = t_tests(part, measure, "participant", against=against).iloc[0].to_dict()
+        else:
+            row = {"n": len(part), "mean": part[measure].mean(), "estimate": part[measure].mean() - against}
+        rows.append({**row, "level": str(level)})
+    return pd.DataFrame(rows).reindex(columns=["level", *T_COLUMNS])
 
 
 def threshold_rows(thresholds: pd.DataFrame) -> pd.DataFrame:
@@ -151,13 +154,14 @@ def proportion_sentence(row: dict[str, Any]) -> str:
     """'129 of 180, 71.7 %, 95 % CI [64.7, 77.7], exact p < .001; over participants t(11) = 4.21, p = .001'."""
     limits = f"95 % CI [{apa.number(100 * row['wilson_low'], 1)}, {apa.number(100 * row['wilson_high'], 1)}]"
     pooled = f"{row['k']} of {row['trials']}, {apa.number(100 * row['proportion'], 1)} %, {limits}"
-    over = apa.t_sentence(row) if row["n"] > 1 else "one participant"
-    return f"{pooled}, exact {apa.p_value(row['p_exact'])}; over participants {over}"
+    over = f"over participants {apa.t_sentence(row)}" if row["n"] > 1 else "one participant"
+    return f"{pooled}, exact {apa.p_value(row['p_exact'])}; {over}"
 
 
 def d_prime_sentence(row: dict[str, Any]) -> str:
     """'mean d′ = 1.20 (SD 0.41), t(11) = 10.1, p < .001, d = 2.9'."""
-    return f"mean d′ = {apa.number(row['mean'])} (SD {apa.number(row['sd'])}), {apa.t_sentence(row)}"
+    over = apa.t_sentence(row) if row["n"] > 1 else "one participant"
+    return f"mean d′ = {apa.number(row['mean'])} (SD {apa.number(row['sd'])}), {over}"
 
 
 def threshold_sentence(row: dict[str, Any]) -> str:

@@ -105,5 +105,5 @@ def _curve(asked: PsychometricPlan, fit: dict[str, float], x: np.ndarray) -> np.
 def _test(results: PlannedResults, kind: str) -> FurtherTest:
     found = next((test for test in results.further if test.kind == kind), None)
     if found is None:
-        raise AnalysisError(f"the {kind} it shows could not be computed.")
+        raise AnalysisError(f"the tests it shows ({kind}) could not be computed.")
     return found

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pandas as pd
 
 from analysis.apa import anova_sentence, effect_name, number, p_value, regression_sentence, t_sentence
@@ -47,6 +49,12 @@ def headlines(results: PlannedResults) -> list[str]:
             found.append("No interaction was significant.")
     decimals = unit_decimals(results)
     for row in results.ttests.to_dict("records"):
+        if not math.isfinite(row["t"]):
+            found.append(
+                f"{row['factor'].capitalize()} {row['level']}: mean {number(row['mean'], decimals)}, not testable "
+                f"against the {row['reference']} of {number(row['against'], decimals)}: everybody has the same mean."
+            )
+            continue
         side = "not shown to differ from" if not row["p"] < ALPHA else "below" if row["estimate"] < 0 else "above"
         found.append(
             f"{row['factor'].capitalize()} {row['level']}: mean {number(row['mean'], decimals)}, {side} the "
@@ -85,7 +93,8 @@ def _shares(label: str, part: pd.DataFrame) -> list[str]:
     found = {
         "above chance": part.loc[low & (part["estimate"] > 0), "level"],
         "below chance": part.loc[low & (part["estimate"] < 0), "level"],
-        "not shown to differ from chance": part.loc[~low, "level"],
+        "not shown to differ from chance": part.loc[part["p"] >= ALPHA, "level"],
+        "not testable": part.loc[part["p"].isna(), "level"],
     }
     told = [f"{what}: {', '.join(levels)}" for what, levels in found.items() if len(levels)]
     return [f"{label} (t tests over participants), {'; '.join(told)}."]

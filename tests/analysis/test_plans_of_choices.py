@@ -234,3 +234,19 @@ def test_a_study_without_an_eye_tracker_is_analysed_all_the_same_and_says_so(ana
     outcome = analyse(write_study(tmp_path / "walk_ratio", 6, text), tmp_path / "out")
     assert any("No gaze was recorded" in warning for warning in outcome.warnings)
     assert len(pd.read_csv(tmp_path / "out" / "anova.csv")) == 15
+
+
+@pytest.mark.parametrize(
+    ("people", "confusion"), [(1, "{$comparison: {0.8: 0.1, 0.9: 0.3, 1.0: 0.5, 1.1: 0.7, 1.2: 0.9}}"), (4, "1.0")]
+)
+def test_one_participant_and_participants_who_all_answer_alike_are_still_described(people, confusion, tmp_path):
+    text = re.sub(r"confusion: \{.*", f"confusion: {confusion}", STUDY.read_text(encoding="utf-8"))
+    for _ in simulate(parse_study("s.yaml", text), people, tmp_path):
+        pass
+    outcome = analyse(tmp_path / "faster", tmp_path / "out")
+    assert any("cannot be run" in warning for warning in outcome.warnings)
+    shares = pd.read_csv(tmp_path / "out" / "proportions.csv")
+    assert shares["trials"].sum() == 80 * people * 2
+    assert shares["t"].isna().all()
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert re.search(r"\bnan\b", page) is None
