@@ -11,12 +11,13 @@ from random import Random
 import numpy as np
 from numpy.typing import NDArray
 
-from experiment_app.film import save_picture
+from experiment_app.film import condition_of, save_picture, walking
 from experiment_app.render.part_map import PartMap
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Camera, Crowd, Marks, Scene, View, Walker
 from experiment_app.walkers import drawn_walkers, walk_of
 from experiment_app.windows.offscreen import offscreen_context
+from protocols.study_file import read_study, shipped_studies
 from stimuli.bodies import shipped_names
 from stimuli.body_library import imported_names
 from stimuli.methods.recipe import Making
@@ -29,6 +30,7 @@ TILE = (400, 450)
 WIDE = (1200, 675)
 HALF = (600, 400)
 SMALL = (240, 340)
+TRIAL = (600, 338)
 CLOSE = Camera("three_quarter", 5.0, 1.3, 24.0)
 PHASES = (0.02, 0.18, 0.34, 0.5)
 
@@ -72,6 +74,11 @@ def make_gallery(folder: Path) -> Iterator[Path]:
     yield folder / "styles.png"
     for size in (250, 500, 1000):
         yield row(f"crowd-{size}.png", [_crowd(size)], WIDE)
+    studies = drawn([_trial(name) for name in shipped_studies()], TRIAL)
+    across = [np.hstack(studies[i : i + 2]) for i in range(0, len(studies) - len(studies) % 2, 2)]
+    rest = [np.hstack([studies[-1], np.zeros_like(studies[-1])])] if len(studies) % 2 else []
+    save_picture(np.vstack([*across, *rest]), folder / "studies.png")
+    yield folder / "studies.png"
     yield _parts(folder / "body-parts.png")
     context.release()
 
@@ -133,6 +140,12 @@ def _street() -> Iterator[Scene]:
 
 def _crowd(size: int) -> Scene:
     return Scene((), Camera("elevated", 34.0, 10.0, 40.0, 180.0), "street", crowd=Crowd(size, seed=6, seconds=2.0))
+
+
+def _trial(name: str) -> Scene:
+    """A trial of a shipped study as its participants see it, 1.2 s after it began: the first condition."""
+    study = read_study(name).study
+    return walking(study, condition_of(study, []), 1.2)
 
 
 def _parts(path: Path) -> Path:

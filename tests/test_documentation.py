@@ -56,6 +56,22 @@ def test_links_and_pictures_lead_somewhere(path):
             assert (path.parent / target).exists(), target
 
 
+def test_the_page_of_studies_names_all_with_their_participants_and_trials():
+    from protocols.design import conditions
+    from protocols.study_file import read_study, shipped_studies
+
+    rows = re.findall(
+        r"^\| `(\w+)` \|[^|]*\| (\d+) × (\d+) trials",
+        (ROOT / "docs" / "studies.md").read_text(encoding="utf-8"),
+        re.M,
+    )
+    studies = {name: read_study(name).study for name in shipped_studies()}
+    assert [(name, int(people), int(trials)) for name, people, trials in rows] == [
+        (name, study.participants.planned, len(conditions(study)) * study.repetitions)
+        for name, study in studies.items()
+    ]
+
+
 def test_the_yaml_of_the_study_file_page_is_accepted_in_a_study():
     from protocols.consistency import inconsistencies
     from protocols.study_file import parse_study
