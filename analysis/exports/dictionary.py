@@ -145,9 +145,10 @@ def of_study(study: Mapping[str, Any]) -> dict[str, Column]:
     """Factors and questions of a study file, by column."""
     found = {}
     for name, levels in (study.get("factors") or {}).items():
-        uses = _uses(study, str(name))
-        unit = "m/s" if "stimulus.speed" in uses else "steps/min" if "task.start" in uses else ""
-        where = f"; it is {' and '.join(uses)}" if uses else ""
+        same, decides = _uses(study, str(name))
+        unit = "m/s" if "stimulus.speed" in same else "steps/min" if "task.start" in same else ""
+        where = f"; it is {' and '.join(same)}" if same else ""
+        where += f"; it decides {' and '.join(decides)}" if decides else ""
         found[str(name)] = Column(
             f"Factor {name} of the design{where}.", unit, {cell(level): "" for level in levels or ()}
         )
@@ -159,14 +160,18 @@ def of_study(study: Mapping[str, Any]) -> dict[str, Column]:
     return found
 
 
-def _uses(study: Mapping[str, Any], factor: str) -> list[str]:
-    """Places of the stimulus and the task that take their value from a factor, as stimulus.speed."""
-    found = []
-    for part in ("stimulus", "task"):
-        for name, value in (study.get(part) or {}).items():
-            if f"${factor}" == value or (isinstance(value, Mapping) and f"${factor}" in value):
-                found.append(f"{part}.{name}")
-    return found
+def _uses(study: Mapping[str, Any], factor: str) -> tuple[list[str], list[str]]:
+    """Places of the stimulus and the task whose value is a factor's level, and those where a table looks it up."""
+    settings = [
+        (f"{part}.{name}", value) for part in ("stimulus", "task") for name, value in (study.get(part) or {}).items()
+    ]
+    same = [place for place, value in settings if value == f"${factor}"]
+    return same, [place for place, value in settings if isinstance(value, Mapping) and _looks_up(value, f"${factor}")]
+
+
+def _looks_up(table: Mapping[str, Any], factor: str) -> bool:
+    inner = [value for value in table.values() if isinstance(value, Mapping)]
+    return factor in table or any(_looks_up(value, factor) for value in inner)
 
 
 def _words(column: str) -> str:

@@ -367,3 +367,23 @@ def test_frames_and_gaze_come_out_frame_by_frame_with_late_ones_marked(data, tmp
     assert beside["SamplingFrequency"] == pytest.approx(60.0)
     assert beside["StartTime"] == 8.0
     assert psych_ds_problems(_exported(drawn, tmp_path / "psych")) == []
+
+
+@pytest.mark.parametrize("study", ["fourier_naturalness", "speed_editing", "crowd_variety"])
+def test_data_of_ratings_and_choices_are_described_and_follow_the_rules_of_psych_ds(tmp_path, study):
+    """`speed` is looked up for each `pair`, so that a pair is no number of m/s."""
+    from analysis.exports.dictionary import of_study
+    from experiment_app.simulate import simulate
+    from protocols.study_file import read_study
+
+    for _ in simulate(read_study(study), 1, tmp_path):
+        pass
+    export(tmp_path / study, "psych-ds", tmp_path / "out")
+    (run,) = read_runs(tmp_path / study)[0]
+    columns = of_study(run.study)
+    assert set(run.study["factors"]) <= columns.keys()
+    if study == "fourier_naturalness":
+        assert columns["pair"].unit == ""
+        assert "it decides stimulus.actor" in columns["pair"].description
+    trials = rows_of(next((tmp_path / "out").rglob("*description-trials_data.csv")))
+    assert {"rating", "chosen"} & set(trials[0])
