@@ -26,7 +26,8 @@ class Header:
 
     participant_number: order of arrival, from 1, places given back first; keys: what each of the task's keys was for
     this participant.
-    walkers: actor to where the walk comes from: captured, modelled, or how much of each.
+    walkers: actor to where the walk comes from: captured, modelled, or how much of each; `style sad` to where that
+    does.
     pilot: a trial run of the study itself, whose data must never stand among real ones.
     group: level of every between-participant factor that the program assigned.
     """

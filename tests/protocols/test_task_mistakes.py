@@ -42,7 +42,7 @@ CHOICE = [
     ("source_speed: $speed", "source_speed: 5", "5 is out of range; it must be at most 3"),
     ("method: captured}", "method: captured, style: sadd}", "there is no style sadd; did you mean sad?"),
     ("measure: confusion_rate", "measure: walk_ratio", "walk_ratio is not what choice trials give; they give"),
-    ("4: 0.14", "4: 1.4", "1.4 is out of range; for simulation.choice.confusion it must be at most 1"),
+    ("4: 0.21", "4: 1.4", "1.4 is out of range; for simulation.choice.confusion it must be at most 1"),
     ("speed: 1.06, points: 4, interpolation: cubic", "speed: 1.06, points: 4", "interpolation is missing"),
     ("speed: [0.88, 1.06, 1.24] ", "speed: [0.88, 1.06, 2.4] ", "factors.speed[2]"),
 ]  # fmt: skip
