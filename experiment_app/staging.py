@@ -6,9 +6,10 @@ from dataclasses import asdict, replace
 
 from experiment_app.scene import Box, Camera, Crowd, Line, Marks, Page, Row, Scene, Slider, Walker
 from experiment_app.walkers import own_step_frequency
+from protocols.consistency import MOST_TRIALS
 from protocols.crowd_part import CrowdOf
 from protocols.form import Choice, Form
-from protocols.plan import QuestionsStep, TextStep
+from protocols.plan import QuestionsStep, TextStep, TrialStep
 from protocols.rating import CONFIRM, ON_SCALE
 from protocols.session import Overlay, Session
 from protocols.stimulus import Making as OwnMaking
@@ -27,15 +28,27 @@ OWN_WAY = OwnMaking()
 
 def stage(session: Session) -> Scene:
     """The scene of a session at its present time."""
-    study, trial = session.plan.study, session.trial
+    trial = session.trial
     if session.overlay is not None:
-        scene = view_scene(study, trial.view) if trial is not None else Scene(page=None)
+        scene = _trial_scene(session, trial.view) if trial is not None else Scene(page=None)
         return replace(scene, page=_overlay_page(session, session.overlay), caption="")
     if trial is not None:
-        return view_scene(study, trial.view)
+        return _trial_scene(session, trial.view)
     if isinstance(session.stage, Form):
         return Scene(page=_page(session, session.stage))
     return Scene(page=Page())
+
+
+def _trial_scene(session: Session, view: View) -> Scene:
+    """What a trial shows; where the study wants it, a scrambled point light stands differently in every trial."""
+    study, step = session.plan.study, session.step
+    scene = view_scene(study, view)
+    if not study.stimulus.marks.each_trial or not isinstance(step, TrialStep):
+        return scene
+    number = step.trial.number + (MOST_TRIALS if step.trial.practice else 0)
+    marks = replace(scene.marks, seed=scene.marks.seed + number)
+    beside = None if scene.beside is None else replace(scene.beside, marks=marks)
+    return replace(scene, marks=marks, beside=beside)
 
 
 def staged(study: Study, walkers: tuple[Walker, ...]) -> Scene:
@@ -53,7 +66,7 @@ def staged(study: Study, walkers: tuple[Walker, ...]) -> Scene:
         walkers,
         camera,
         look.ground,
-        marks=Marks(**look.marks.model_dump()),
+        marks=Marks(**look.marks.model_dump(exclude={"each_trial"})),
         screen_angle=study.display.angle if study.display is not None else 0.0,
         lod=look.level_of_detail,
     )

@@ -64,6 +64,7 @@ class MarksLook(_Part):
     brightness: float = Field(1.0, strict=True, ge=0.0, le=1.0, description="Linear light; 1 is the display's white.")
     background: float = Field(0.0, strict=True, ge=0.0, le=1.0, description="Of the plain field, linear light.")
     seed: int = Field(0, strict=True, ge=0, description="Of the places of a scrambled point light.")
+    each_trial: bool = Field(False, description="Scrambled differently in every trial; its number is added to seed.")
 
 
 class Appearance(_Part):

@@ -15,8 +15,11 @@ from experiment_app.render.cameras import AIM, HEADINGS, place_camera
 from experiment_app.render.renderer import Renderer
 from experiment_app.render.street_model import HOUSES_AT, KERB_HEIGHT, STRETCH, street_side
 from experiment_app.scene import STREET_HALF_WIDTH, Camera, Ground, Scene, View, Walker
-from experiment_app.staging import staged
+from experiment_app.staging import stage, staged
 from experiment_app.walkers import cast, drawn_walkers, measured_gait
+from protocols.events import Shown
+from protocols.plan import TrialStep, make_plan
+from protocols.session import begin, handle
 from protocols.study_file import parse_study
 from tests.protocols.studies import changed
 
@@ -181,3 +184,22 @@ def test_a_mismatched_body_has_the_actors_height_and_walks_at_the_actors_speed()
         walkers = (Walker(actor, 1.1, 105.0, 0.0, body=name) for name in ("matched", "mismatched"))
         for walker in walkers:
             assert measured_gait(Scene((walker,)))["speed"] == pytest.approx(1.1, abs=0.02)
+
+
+@pytest.mark.parametrize("each_trial", [False, True])
+def test_a_scrambled_point_light_can_differ_from_trial_to_trial(each_trial: bool) -> None:
+    text = changed(
+        (
+            "ground: open_ground",
+            f"ground: plain\n  body: point_light_scrambled\n  marks: {{each_trial: {str(each_trial).lower()}}}",
+        )
+    )
+    plan = make_plan(parse_study("s.yaml", text).study, 1, 1)
+    trials = [step for step in plan.steps if isinstance(step, TrialStep)]
+    seeds = []
+    for step in trials[:6]:
+        session = begin(replace(plan, steps=(step,)))
+        scene = stage(handle(session, Shown(0.0)))
+        assert scene == stage(handle(session, Shown(0.0)))
+        seeds.append(scene.marks.seed)
+    assert len(set(seeds)) == (6 if each_trial else 1)
