@@ -6,12 +6,13 @@ import math
 from collections.abc import Sequence
 
 from analysis import apa
+from analysis.latex_further import further_rows, p_text
 from analysis.results import ALPHA, PlannedResults, unit_decimals
 
 _SPECIAL = {
     "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
     "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "−": "$-$", "×": r"$\times$", "<": "$<$", ">": "$>$",
-    "·": r"$\cdot$", "–": "--",
+    "·": r"$\cdot$", "–": "--", "±": r"$\pm$", "≤": r"$\le$", "≥": r"$\ge$", "≠": r"$\ne$", "′": "$'$",
 }  # fmt: skip
 
 
@@ -21,14 +22,14 @@ def escaped(text: object) -> str:
 
 
 def latex_tables(results: PlannedResults) -> str:
-    r"""ANOVA, t tests and significant pairs as `table` environments; needs \usepackage{booktabs}."""
+    r"""ANOVA, t tests, significant pairs, every further test as `table` environments; needs \usepackage{booktabs}."""
     parts = ["% \\usepackage{booktabs}; written by gaitlab"]
     plan, decimals = results.plan, unit_decimals(results)
     if len(results.anova):
         rows = [
             [
                 apa.effect_name(r["effect"]), f"{apa.degrees(r['df1_gg'])}, {apa.degrees(r['df2_gg'])}",
-                apa.number(r["F"]), _p(r["p_gg"]), _share(r["eta_p2"]),
+                apa.number(r["F"]), p_text(r["p_gg"]), _share(r["eta_p2"]),
             ]
             for r in results.anova.to_dict("records")
         ]  # fmt: skip
@@ -38,7 +39,7 @@ def latex_tables(results: PlannedResults) -> str:
         rows = [
             [
                 f"{r['factor']} {r['level']}", *(apa.number(r[c], decimals) for c in ("mean", "sd", "against")),
-                apa.number(r["t"]), apa.degrees(r["df"]) if math.isfinite(r["df"]) else "–", _p(r["p"]),
+                apa.number(r["t"]), apa.degrees(r["df"]) if math.isfinite(r["df"]) else "–", p_text(r["p"]),
                 apa.number(r["d"]),
             ]
             for r in results.ttests.to_dict("records")
@@ -50,17 +51,17 @@ def latex_tables(results: PlannedResults) -> str:
         rows = [
             [
                 apa.effect_name(r["effect"]), r["a"], r["b"], apa.number(r["estimate"], decimals),
-                apa.number(r["t"]), apa.degrees(r["df"]), _p(r["p"]),
+                apa.number(r["t"]), apa.degrees(r["df"]), p_text(r["p"]),
             ]
             for r in pairs.to_dict("records")
         ]  # fmt: skip
         head = ["Effect", "a", "b", "a $-$ b", "$t$", "df", "$p$"]
         parts.append(_table(f"Pairs that differ (p adjusted: {plan.adjust})", head, rows))
+    for test in results.further:
+        if (written := further_rows(test)) is not None:
+            caption, head, body = written
+            parts.append(_table(f"{plan.label}: {caption[:1].lower()}{caption[1:]}", head, body))
     return "\n\n".join(parts) + "\n"
-
-
-def _p(value: float) -> str:
-    return "–" if not math.isfinite(value) else "< .001" if value < 0.001 else apa.share(value, 3)
 
 
 def _share(value: float) -> str:

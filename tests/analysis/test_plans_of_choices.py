@@ -250,3 +250,13 @@ def test_one_participant_and_participants_who_all_answer_alike_are_still_describ
     assert shares["t"].isna().all()
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert re.search(r"\bnan\b", page) is None
+
+
+def test_every_test_has_a_table_for_latex(analysed, tmp_path):
+    text = (analysed[0] / "tables.tex").read_text(encoding="utf-8")
+    for caption in ("t tests", "planned pairs", "proportions against chance", "sensitivity", "thresholds of the psych"):
+        assert f"\\caption{{Test chosen: {caption}" in text
+    assert text.count(r"\begin{tabular}") == text.count(r"\end{tabular}") == 8
+    for table in re.findall(r"\\begin\{tabular\}\{(\w+)\}(.*?)\\end", text, re.S):
+        rows = [row for row in table[1].splitlines() if row.endswith(r"\\")]
+        assert {row.count("&") + 1 for row in rows} == {len(table[0])}
