@@ -60,14 +60,15 @@ def import_file(
 @body_commands.command(name="list")
 def list_bodies() -> int:
     """List every name that a study's `body` can have."""
-    from stimuli.bodies import load_body, shipped_names
+    from stimuli.bodies import haircut_names, load_body, shipped_names
     from stimuli.body_library import MATCHED, MISMATCHED, imported_names
     from stimuli.point_light import FIGURES
 
-    for name in (*shipped_names(), *imported_names()):
+    ours = (*shipped_names(), *haircut_names())
+    for name in (*ours, *imported_names()):
         body = load_body(name)
         counts = " / ".join(str(sum(len(s.triangles) for s in level)) for level in body.levels)
-        kind = "comes with gaitlab" if name in shipped_names() else "imported"
+        kind = "comes with gaitlab" if name in ours else "imported"
         out.print(f"{name:24}{body.stature:.2f} m  {counts} triangles  {kind}", markup=False)
     for name, whose in ((MATCHED, "the actor's sex"), (MISMATCHED, "the other sex")):
         out.print(f"{name:24}the body that comes with gaitlab of {whose}", markup=False)

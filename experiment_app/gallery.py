@@ -18,7 +18,7 @@ from experiment_app.scene import Camera, Crowd, Marks, Scene, View, Walker
 from experiment_app.walkers import drawn_walkers, walk_of
 from experiment_app.windows.offscreen import offscreen_context
 from protocols.study_file import read_study, shipped_studies
-from stimuli.bodies import shipped_names
+from stimuli.bodies import haircut_names, shipped_names
 from stimuli.body_library import imported_names
 from stimuli.methods.recipe import Making
 from stimuli.methods.styles import default_styles
@@ -66,7 +66,7 @@ def make_gallery(folder: Path) -> Iterator[Path]:
     yield row("treadmill.png", list(_treadmill()), HALF)
     yield row("pair.png", [_pair()], WIDE)
     yield row("street.png", list(_street()), HALF)
-    bodies = (*shipped_names(), *imported_names())
+    bodies = (*shipped_names(), *haircut_names(), *imported_names())
     yield row("bodies.png", [_one("M1", 0.2, body=name) for name in bodies[:6]])
     yield row("levels.png", [_one("F1", 0.2, lod=level) for level in (0, 1, 2)])
     styles = drawn([_styled(style) for style in (None, *default_styles())], SMALL)

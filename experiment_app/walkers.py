@@ -13,7 +13,7 @@ from experiment_app.crowds import drawn_crowd, measured_crowd
 from experiment_app.render.drawn import Drawn, DrawnCrowd, DrawnWalker
 from experiment_app.scene import Scene, Walker
 from stimuli.actors import Actor, load_actor
-from stimuli.bodies import body_for, load_body, scaled, shipped_names
+from stimuli.bodies import body_for, haircut_names, load_body, scaled, shipped_names
 from stimuli.body import Body
 from stimuli.body_retarget import on_its_own_soles
 from stimuli.measure import delivered_gait
@@ -41,7 +41,8 @@ def cast(actor: str, body: str) -> tuple[Actor, Body]:
     worn = load_body(name)
     chosen = load_actor(actor, worn)
     grown = scaled(worn, chosen.height)
-    return (chosen if name in shipped_names() else on_its_own_soles(chosen, grown)), grown
+    shipped = name in (*shipped_names(), *haircut_names())
+    return (chosen if shipped else on_its_own_soles(chosen, grown)), grown
 
 
 @cache

@@ -19,7 +19,17 @@ from stimuli.point_light import FIGURES
 from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
 from stimuli.skinning import skin
 
-__all__ = ["BodyError", "body_for", "body_names", "hair_names", "load_body", "scaled", "shipped_names", "with_girths"]
+__all__ = [
+    "BodyError",
+    "body_for",
+    "body_names",
+    "hair_names",
+    "haircut_names",
+    "load_body",
+    "scaled",
+    "shipped_names",
+    "with_girths",
+]
 
 _NAMES = ("woman", "man")
 SLIMMEST, STOUTEST = 0.6, 1.8
@@ -32,9 +42,14 @@ def shipped_names() -> tuple[str, ...]:
     return _NAMES
 
 
+def haircut_names() -> dict[str, tuple[str, str]]:
+    """Name of a shipped body with another haircut than its usual one, as woman_ponytail -> body and haircut."""
+    return {f"{name}_{cut}": (name, cut) for name in _NAMES for cut in hair_names(name)[1:]}
+
+
 def body_names() -> tuple[str, ...]:
     """What a study can name as body: shipped and imported ones, those by the actor's sex, figures without a body."""
-    return (*_NAMES, *imported_names(), MATCHED, MISMATCHED, *FIGURES)
+    return (*_NAMES, *haircut_names(), *imported_names(), MATCHED, MISMATCHED, *FIGURES)
 
 
 def body_for(sex: str, name: str) -> str:
@@ -49,7 +64,7 @@ def load_body(name: str, hair: str | None = None) -> Body:
     if name not in _NAMES and name in imported_names():
         path = path_of(name)
         return _imported(name, path, path.stat().st_mtime_ns)
-    return _shipped(name, hair)
+    return _shipped(*haircut_names().get(name, (name, hair)))
 
 
 @cache
@@ -125,6 +140,6 @@ def _file(name: str) -> bytes:
     if name not in _NAMES:
         if name in FIGURES:
             raise BodyError(f"{name} is drawn without a body")
-        known = (*_NAMES, *imported_names())
+        known = (*_NAMES, *haircut_names(), *imported_names())
         raise BodyError(f"there is no body {name!r}; known bodies are {', '.join(known)}")
     return files("stimuli").joinpath("data", "bodies", f"{name}.glb").read_bytes()

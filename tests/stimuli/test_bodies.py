@@ -5,9 +5,22 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from stimuli.bodies import BodyError, body_for, hair_names, load_body, scaled, shipped_names, with_girths
+from stimuli.actors import load_actor
+from stimuli.bodies import (
+    BodyError,
+    body_for,
+    body_names,
+    hair_names,
+    haircut_names,
+    load_body,
+    scaled,
+    shipped_names,
+    with_girths,
+)
 from stimuli.body_files.baked import read_baked
+from stimuli.measure import poses
 from stimuli.skeleton import JOINTS, PARENTS
 from stimuli.skinning import skin
 
@@ -175,6 +188,45 @@ def test_an_elbow_bent_by_90_degrees_keeps_its_volume(name):
     around = np.ptp(ring[:, 2]) ** 2 * np.pi / 4 * 0.16  # 16 cm of arm about the elbow
     loss = (volume(s.positions, s.triangles) - volume(bent, s.triangles)) / around
     assert abs(loss) < 0.15
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_wrist_turned_by_45_degrees_is_no_sweet_wrapper(name):
+    """Linear blending thins a twisted joint by the cosine of half the angle at most: 8 % for 45 degrees."""
+    body = load_body(name)
+    s, joint = surface(body, "skin"), JOINTS.index("leftHand")
+    wrist, elbow = (body.skeleton.positions[JOINTS.index(part)] for part in ("leftHand", "leftLowerArm"))
+    along = (wrist - elbow) / np.linalg.norm(wrist - elbow)
+    turn = Rotation.from_rotvec(np.radians(45) * along).as_matrix()
+    matrices = np.tile(np.eye(3, 4), (len(JOINTS), 1, 1))
+    matrices[joint] = np.column_stack([turn, wrist - turn @ wrist])
+    near = np.abs((s.positions - wrist) @ along) < 0.02
+    near &= np.linalg.norm(s.positions - wrist, axis=1) < 0.06
+
+    def thickness(positions):
+        off = positions[near] - wrist
+        return np.linalg.norm(off - np.outer(off @ along, along), axis=1).mean()
+
+    assert near.sum() > 20
+    assert thickness(skin(s, matrices)[0]) > 0.92 * thickness(s.positions)
+
+
+def test_wrists_hardly_twist_when_the_default_actors_walk():
+    for name in ("F1", "M1"):
+        actor = load_actor(name)
+        along = actor.skeleton.offsets[JOINTS.index("leftHand")]
+        turned = poses(actor, 1.1, 100.0, np.arange(12) / 12).rotations[:, JOINTS.index("leftHand")]
+        twist = 2 * np.arctan2(turned[:, :3] @ along / np.linalg.norm(along), turned[:, 3])
+        assert np.abs((np.degrees(twist) + 180) % 360 - 180).max() < 10
+
+
+def test_a_haircut_is_part_of_a_bodys_name():
+    assert {"woman_ponytail", "man_cropped"} <= set(body_names())
+    for name, (body, cut) in haircut_names().items():
+        worn, usual = load_body(name), load_body(body)
+        assert worn is load_body(body, cut)
+        assert len(surface(worn, "hair").positions) != len(surface(usual, "hair").positions)
+        assert np.array_equal(surface(worn, "trousers").positions, surface(usual, "trousers").positions)
 
 
 @pytest.mark.parametrize("name", NAMES)
