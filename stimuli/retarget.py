@@ -42,6 +42,17 @@ class Figure:
         """Left and right leg."""
         return Leg.of(self.skeleton, "left"), Leg.of(self.skeleton, "right")
 
+    @cached_property
+    def arms(self) -> dict[str, Floats]:
+        """Joint of an arm to the rotation (4,) that turns its bone at rest into that of the model's arm."""
+        offsets = self.skeleton.offsets
+        ends = (("UpperArm", "LowerArm"), ("LowerArm", "Hand"), ("Hand", "Hand"))
+        return {
+            side + joint: shortest_arc(offsets[JOINTS.index(side + end)], MODEL_ARM * (sign, 1.0, 1.0))
+            for side, sign in (("right", -1.0), ("left", 1.0))
+            for joint, end in ends
+        }
+
     @property
     def leg_length(self) -> float:
         """m, hip to ankle, mean of both legs."""
@@ -87,18 +98,12 @@ def _leg(figure: Figure, walk: WalkCurves, side: int) -> LegPath:
 
 def _upper_body(figure: Figure, walk: WalkCurves) -> Floats:
     """Local rotations (N, 13, 4) of the UPPER joints over the cycle."""
-    offsets = figure.skeleton.offsets
     right, left = curves(walk.sides[1], PHASES), curves(walk.sides[0], PHASES - walk.left_strike)
     world = {segment: _turned(right, segment) for segment in ("hips", "spine", "chest", "neck", "head")}
-    for side, signals, mirror, sign in (("right", right, False, -1.0), ("left", left, True, 1.0)):
+    for side, signals, mirror in (("right", right, False), ("left", left, True)):
         world[f"{side}Shoulder"] = _turned(signals, "shoulder", mirror)
-        for joint, end, segment in (
-            ("UpperArm", "LowerArm", "upperArm"),
-            ("LowerArm", "Hand", "lowerArm"),
-            ("Hand", "Hand", "hand"),
-        ):
-            aligned = shortest_arc(offsets[JOINTS.index(side + end)], MODEL_ARM * (sign, 1.0, 1.0))
-            world[side + joint] = multiply(_turned(signals, segment, mirror), aligned)
+        for joint, segment in (("UpperArm", "upperArm"), ("LowerArm", "lowerArm"), ("Hand", "hand")):
+            world[side + joint] = multiply(_turned(signals, segment, mirror), figure.arms[side + joint])
     local = [world["hips"]]
     for joint in UPPER[1:]:
         local.append(multiply(inverse(world[JOINTS[PARENTS[JOINTS.index(joint)]]]), world[joint]))
