@@ -35,8 +35,9 @@ from protocols.session import Session
 PROBED_SWAPS = 20
 """Bare buffer swaps timed at the start to learn whether the driver waits for the display."""
 
-PAD_PERIOD = 0.002
-"""s between two looks at a gamepad, which has no events of its own."""
+LISTENING = 0.002
+"""s after which a wait is looked up from where times are those of arrival: the time since the last look bounds their
+error, and a gamepad has no events of its own."""
 
 SWITCH_INTERVAL = 0.0005
 """s after which Python lets the thread that receives events interrupt the one that draws."""
@@ -97,6 +98,8 @@ class DesktopWindow:
         except Exception as error:
             glfw.terminate()
             raise UsageError(f"OpenGL 3.3 is needed and could not be started ({error}).") from None
+        by_arrival = self._mouse or self._pad is not None or self._times.name == "arrival"
+        self._patience = LISTENING if by_arrival else float("inf")
         self._switch_interval = sys.getswitchinterval()
         sys.setswitchinterval(SWITCH_INTERVAL)
         self._heard = self.now()
@@ -246,7 +249,7 @@ class DesktopWindow:
     def _receive(self, timeout: float) -> None:
         """Waits up to `timeout` (s) for events, notes their times, then lets GLFW report them."""
         if timeout > 0.0:
-            self._waiting.wait(min(timeout, PAD_PERIOD) if self._pad else timeout)
+            self._waiting.wait(min(timeout, self._patience))
         self._times.collect()
         glfw.poll_events()
         self._times.forget()
