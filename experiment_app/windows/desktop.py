@@ -39,7 +39,7 @@ LISTENING = 0.002
 """s after which a wait is looked up from where times are those of arrival: the time since the last look bounds their
 error, and a gamepad has no events of its own."""
 
-SWITCH_INTERVAL = 0.0005
+SWITCH_INTERVAL = 0.0001
 """s after which Python lets the thread that receives events interrupt the one that draws."""
 
 MOUSE_KEYS = {
