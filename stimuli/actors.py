@@ -3,9 +3,9 @@
 The sixteen actors of Niay (2022, table 4.1) and two for training. Who they are stands in actor_table.csv; how
 they walk is the gait model at their sex, leg length and walk ratio plus a manner of their own: 0.8 of what one
 captured person does differently from the average and 0.6 of another's (0.64 + 0.36 = 1 keeps the spread between
-people). Of the mixtures of captured people those were chosen with which hip, knee and ankle, as drawn at comfort speed,
-stay within two standard deviations of adults for 95 % of the cycle, and no two actors walk alike. Their 25 cycles are
-made once when an actor is loaded. Knows no window, no clock.
+people; M1 is made of three). Of the mixtures of captured people those were chosen with which hip, knee and ankle, as
+drawn at comfort speed, stay within two standard deviations of adults for 95 % of the cycle, and no two actors walk
+alike. Their 25 cycles are made once when an actor is loaded. Knows no window, no clock.
 """
 
 from __future__ import annotations

@@ -25,8 +25,12 @@ SAMPLES = 256
 PHASES = np.arange(SAMPLES) / SAMPLES
 SMOOTHING = 6  # samples each way
 
-HIPS_HARMONICS = 12
+HIPS_HARMONICS = 10
 """Harmonics of the cycle in the hips' height and advance; of a walk whose sides are alike only the even ones."""
+
+CALM = 8.0
+"""Harmonic of the cycle at which the hips give in to the legs by half; above it they hardly do, as in captured walks,
+whose hips move less than half a millimetre in any harmonic above the sixth."""
 
 STEADY = 0.3
 """How much the odd harmonics of the advance are held to zero, in samples of a standing leg: left and right footprints
@@ -35,7 +39,7 @@ and a forward sway once per cycle are told apart only while both feet are on the
 CLOSING = 0.15
 """Share of swing in which a captured foot comes on to its footprint."""
 
-LOWERED = 0.14
+LOWERED = 0.12
 """Share of swing, the last, in which the foot comes down; above the ground as long as it still moves ahead."""
 
 WITHIN_REACH = 0.03
@@ -221,7 +225,8 @@ def _advance(paths: Sequence[LegPath], harmonics: Floats, stride: float) -> tupl
     wanted = [path.foot.ankle[:, 2] - stride * PHASES - path.hip[:, 2] for path in paths]
     forward = [path.vector[:, 1] for path in paths]
     weights = np.concatenate([path.standing for path in paths])
-    hold = np.append(np.repeat(np.where(harmonics % 2 == 1, STEADY, 0.0), 2), np.zeros(len(paths)))
+    steady = np.repeat(np.where(harmonics % 2 == 1, STEADY, 0.0), 2)
+    hold = np.append(steady + _calming(harmonics, weights), np.zeros(len(paths)))
     design = np.column_stack([np.concatenate(terms), np.concatenate(forward)])
     solution = _least_squares(design, np.concatenate(wanted), weights, np.append(hold, 0.0))
     gain = float(np.clip(solution[-1], *SWING_GAIN))
@@ -262,17 +267,19 @@ def _height(leg: Leg, paths: Sequence[LegPath], harmonics: Floats, advance: Floa
         weight.append(path.standing / (np.maximum(path.knee, 0.0) + 0.05) ** 2 * np.where(PHASES < 0.1, 2.0, 1.0))
         standing.append(foot.stance - 0.17 > PHASES)
     parts = [np.asarray(np.concatenate(part)) for part in (wanted, ceiling, weight)]
-    return _below(terms, parts[0], parts[1], parts[2], np.concatenate(standing))
+    return _below(terms, harmonics, parts[0], parts[1], parts[2], np.concatenate(standing))
 
 
-def _below(terms: Floats, wanted: Floats, ceiling: Floats, weight: Floats, standing: Bools) -> Floats:
+def _below(
+    terms: Floats, harmonics: Floats, wanted: Floats, ceiling: Floats, weight: Floats, standing: Bools
+) -> Floats:
     """Coefficients of the weighted least squares curve that stays below a ceiling where the leg is `standing`."""
     force: Floats = np.zeros(len(terms))
     coefficients: Floats = np.zeros(terms.shape[1])
     for _ in range(12):
         total = weight + force
         target = (weight * wanted + force * (ceiling - CEILING_MARGIN)) / np.maximum(total, 1e-9)
-        coefficients = _least_squares(terms, target, total, np.zeros(terms.shape[1]))
+        coefficients = _least_squares(terms, target, total, np.append(0.0, _calming(harmonics, total)))
         over = standing & (terms @ coefficients > ceiling)
         if not over.any():
             break
@@ -310,6 +317,11 @@ def _terms(phases: Floats, harmonics: Floats) -> Floats:
     terms[:, 1::2] = np.cos(angles)
     terms[:, 2::2] = np.sin(angles)
     return terms
+
+
+def _calming(harmonics: Floats, weights: Floats) -> Floats:
+    """(2 H,) ridge of the coefficients of these harmonics in a least squares fit with weights (N,)."""
+    return np.asarray(np.repeat(0.5 * float(np.sum(weights)) * (harmonics / CALM) ** 6, 2))
 
 
 def _least_squares(design: Floats, wanted: Floats, weights: Floats, hold: Floats) -> Floats:

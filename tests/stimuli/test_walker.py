@@ -58,6 +58,17 @@ def test_no_joint_jerks_where_the_leg_is_nearly_straight_before_the_heel_strikes
     assert np.linalg.norm(foretold - joints, axis=2).max() < 0.0035
 
 
+@pytest.mark.parametrize("name", ["F1", "F3", "M1", "M5"])
+def test_the_hips_do_not_tremble(name):
+    """Captured hips (four CMU and Schreiber & Moissenet walks) move 0.4 mm at most in any harmonic above the sixth."""
+    actor = load_actor(name)
+    gait = comfort(actor)
+    hips = poses(actor, gait.speed, gait.step_frequency, np.arange(256) / 256).hips
+    amplitudes = 2 * np.abs(np.fft.rfft(hips[:, 1:], axis=0)) / 256
+    assert amplitudes[7:40].max() < 0.0008  # m
+    assert amplitudes[9:40].max() < 0.0004
+
+
 def test_left_and_right_mirror_each_other_half_a_cycle_apart():
     actor = load_actor("F3")
     mirror = [JOINTS.index(n.replace("left", "#").replace("right", "left").replace("#", "right")) for n in JOINTS]
