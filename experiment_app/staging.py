@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, replace
+from functools import cache
 
 from experiment_app.scene import Box, Camera, Crowd, Line, Marks, Page, Row, Scene, Slider, Walker
 from experiment_app.walkers import own_step_frequency
@@ -113,6 +114,7 @@ def _walker(seen: Seen) -> Walker:
     )
 
 
+@cache
 def making_of(walk: Walk) -> Making | None:
     """The way a walk is made as the stimuli know it; None for the actor's own, at any step frequency."""
     return None if walk.making == OWN_WAY else Making(**asdict(walk.making))

@@ -12,7 +12,7 @@ from protocols import adjustment
 from protocols.adjustment import AdjustmentTask, AdjustmentTrial
 from protocols.mistake import Mistake
 from protocols.parts import Key, Level, Part, StepFrequency
-from protocols.setting import StepFrequencySetting, kind_of, value_of
+from protocols.setting import CONSTANT, StepFrequencySetting, kind_of, value_of
 from protocols.stimulus import Stimulus, Walk
 from protocols.task import Setup
 from protocols.task_part import TASK, TaskKeys, TaskPart
@@ -114,7 +114,7 @@ class Adjustment(TaskPart):
     def _starts(self, study: Study) -> Iterator[Mistake]:
         reach, start = self.range, self.start
         inside = f"outside the range {reach.minimum:g} to {reach.maximum:g} steps/min of task.range"
-        if kind_of(start) == "$constant":
+        if kind_of(start) == CONSTANT:
             if not reach.minimum <= float(value_of(start, {})) <= reach.maximum:
                 yield Mistake((*TASK, "start"), f"{start:g} is {inside}")
         elif isinstance(start, str):

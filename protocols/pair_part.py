@@ -64,10 +64,11 @@ class PairPart(TaskPart):
 
     @property
     def seconds(self) -> float:
-        """s that a participant typically takes for a trial."""
-        after = self.arrangement == "one_after_the_other"
-        shown = len(self.alternatives) * ((self.time_limit or 0.0) + self.gap) if after else 0.0
-        return max(shown + DECIDING, self.minimum_looking_time)
+        """s that a participant typically takes for a trial; with a limit, half of it if that is longer."""
+        limit = self.time_limit or 0.0
+        if self.arrangement == "one_after_the_other":
+            return max(len(self.alternatives) * (limit + self.gap) + DECIDING, self.minimum_looking_time)
+        return max(DECIDING, limit / 2.0, self.minimum_looking_time)
 
     def walks(self, stimulus: Stimulus, levels: Mapping[str, Level]) -> dict[str, Walk]:
         """Name of every alternative to its walk in a trial with these levels, in the order of the file."""

@@ -68,6 +68,9 @@ class PagePainter:
             back = PAGE if plain else CLEAR if page.strip else DIM
             card = () if layout.card is None else (Shape(layout.card, CARD, 9 * layout.unit),)
             whole = Rectangle(0, 0, width, height)
+            if page.strip and not plain:
+                floor = round(page.strip * height)
+                whole = Rectangle(0, height - floor, width, floor)
             self._page.compose(layout, whole, back, (*card, *shapes_of(layout)))
             if plain:
                 self._context.copy_framebuffer(self._context.fbo, self._page.frame)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from experiment_app.render.page_shapes import BUTTON, CARD, INKS, PAGE, Colour
 from experiment_app.render.pages import PagePainter
-from experiment_app.scene import Box, Line, Page, Row, Scene, Walker
+from experiment_app.scene import Box, Line, Page, Row, Scene, Slider, Walker
 
 SIZE = (640, 360)
 WALKER = Walker("F1", 1.0, 100.0, 0.0)
@@ -132,3 +132,12 @@ def test_after_resizing_a_click_finds_the_button_where_it_is_drawn(context):
         if (pixels[y, x] == codes(BUTTON)).all():
             assert painter.hit(PAUSE, x, y) == "go"
     painter.release()
+
+
+def test_a_question_in_a_strip_changes_nothing_above_it(drawn):
+    row = Row(
+        "How natural?", (Box("go", "Go on", "button"),), slider=Slider("scale", 0.0, 4.0, 1.0, "low", "high", 3.0)
+    )
+    pixels = drawn(Scene((WALKER,), page=Page((), (row,), over_scene=True, strip=0.25), strip=0.25))
+    assert (pixels[:270] == 255).all()
+    assert len(np.unique(pixels[270:].reshape(-1, 3), axis=0)) > 10
