@@ -59,7 +59,7 @@ class MadeWalk:
         return replace(self.cycle, stride_length=120.0 * speed / step_frequency, stride_time=120.0 / step_frequency)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=1024)
 def made_walk(actor: Actor, making: Making, speed: float) -> MadeWalk:
     """The walk of an actor at a speed (m/s), by a method.
 
