@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any
 
 from analysis.errors import AnalysisError
@@ -11,6 +12,8 @@ from analysis.exports.dictionary import Column, dictionary, dictionary_table
 from analysis.exports.runs import ExportedRun
 from analysis.exports.table import Table, cell, csv_bytes
 from analysis.exports.words import readme, study_files
+
+Parts = Callable[[], Iterator[Table]]
 
 BY_RUN: tuple[Callable[[ExportedRun], Table], ...] = (
     tables.trials,
@@ -25,7 +28,7 @@ def csv_files(runs: Sequence[ExportedRun]) -> Iterator[tuple[str, bytes]]:
     """Every table as CSV, the data dictionary, the study file and a README."""
     meant: dict[str, Column] = {}
     for name, columns, parts in _tables(runs, meant):
-        chunks = [csv_bytes(Table(name, columns, part.rows), header=not i) for i, part in enumerate(parts)]
+        chunks = [csv_bytes(Table(name, columns, part.rows), header=not i) for i, part in enumerate(parts())]
         yield f"{name}.csv", b"".join(chunks)
     yield from _about(runs, meant, "csv")
 
@@ -39,7 +42,7 @@ def parquet_files(runs: Sequence[ExportedRun]) -> Iterator[tuple[str, bytes]]:
         raise AnalysisError("Parquet needs pyarrow; install it with: pip install 'gaitlab[parquet]'") from None
     meant: dict[str, Column] = {}
     for name, columns, parts in _tables(runs, meant):
-        values = {c: [row.get(c) for part in parts for row in part.rows] for c in columns}
+        values = {c: [row.get(c) for part in parts() for row in part.rows] for c in columns}
         arrays = {column: arrow.array(_of_one_type(inner)) for column, inner in values.items()}
         fields = [
             arrow.field(c, arrays[c].type, metadata={"description": meant[c].description, "unit": meant[c].unit})
@@ -51,18 +54,18 @@ def parquet_files(runs: Sequence[ExportedRun]) -> Iterator[tuple[str, bytes]]:
     yield from _about(runs, meant, "parquet")
 
 
-def _tables(
-    runs: Sequence[ExportedRun], meant: dict[str, Column]
-) -> Iterator[tuple[str, tuple[str, ...], list[Table]]]:
-    """Name, columns and parts of each table that has rows; adds what the columns mean to `meant`."""
-    whole = [[tables.participants(runs)], [tables.runs_table(runs)]]
-    by_run = ([make(run) for run in runs] for make in BY_RUN)
+def _tables(runs: Sequence[ExportedRun], meant: dict[str, Column]) -> Iterator[tuple[str, tuple[str, ...], Parts]]:
+    """Name, columns and parts of each table that has rows; adds what the columns mean to `meant`.
+
+    The parts are made twice, once for the columns and once for the rows, so that only one run's frames are held.
+    """
+    whole: list[Parts] = [lambda: iter([tables.participants(runs)]), lambda: iter([tables.runs_table(runs)])]
+    by_run: list[Parts] = [partial(map, make, runs) for make in BY_RUN]
     for parts in (*whole, *by_run):
-        columns = tuple(dict.fromkeys(column for part in parts for column in part.columns))
-        if columns:
-            for column, what in dictionary(parts, runs).items():
-                meant.setdefault(column, what)
-            yield parts[0].name, columns, parts
+        what = dictionary(parts(), runs)
+        if what:
+            meant.update((name, column) for name, column in what.items() if name not in meant)
+            yield next(parts()).name, tuple(what), parts
 
 
 def _about(runs: Sequence[ExportedRun], meant: dict[str, Column], to: str) -> Iterator[tuple[str, bytes]]:
