@@ -20,7 +20,7 @@ from stimuli.skeleton import Floats
 
 STRETCH = 110.0  # m that a crowd walks along before it comes in again, where that is long enough for so many
 END = 26.0  # z (m) of the stretch's end: walkers go from there back to its beginning
-FADING = (8.0, 1.0)  # m at the beginning and the end within which walkers come and go
+FADING = (4.0, 1.0)  # m at the beginning and the end within which walkers come and go
 
 
 @dataclass(frozen=True, eq=False)

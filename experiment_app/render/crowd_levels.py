@@ -15,16 +15,20 @@ from numpy.typing import NDArray
 from experiment_app.render.cameras import NEAR, Viewpoint
 from stimuli.skeleton import Floats
 
-HEIGHTS = np.array([500.0, 230.0, 95.0, 55.0, 32.0])
+HEIGHTS = np.array([500.0, 230.0, 110.0, 62.0, 38.0])
 """Pixels of stature below which the next coarser level is drawn."""
 
 MIDDLE = 0.9  # m above the ground, about the middle of a person
 
-BAND = 0.05
+BAND = 0.03
 """Share of a threshold on either side of it within which both levels are drawn."""
 
 FAR_LEVEL = 3
-"""Finest of the levels made for crowds; who is drawn in it or smaller is lit at the vertices."""
+"""Finest of the levels made for crowds, which are lit at their vertices."""
+
+FAR_HEIGHT = 150.0
+"""Pixels of stature below which the bodies' own coarsest level is lit at its vertices as well: it has a vertex for
+every few pixels."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +96,7 @@ def seen_instances(
     low = np.concatenate([np.zeros(len(there)), share[both]])
     high = np.minimum(np.concatenate([share, np.ones(len(both))]), shown[rows])
     faded = (low > 0.0) | (high < 1.0)
-    far = (heights[rows] < HEIGHTS[FAR_LEVEL - 1] * (1.0 + BAND)) | (level >= FAR_LEVEL)
+    far = (heights[rows] < FAR_HEIGHT) & (level >= 2) | (level >= FAR_LEVEL)
     key = (body[rows] * levels + level) * 4 + 2 * far + faded
     order = np.argsort(key, kind="stable")
     table = np.column_stack([rows, low, high, look[rows]])[order].astype(np.float32)

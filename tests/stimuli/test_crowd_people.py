@@ -8,7 +8,8 @@ import pytest
 from stimuli.actors import load_actor
 from stimuli.blend_tree import Leaf
 from stimuli.bodies import load_body
-from stimuli.crowd_bodies import GIRTHS, SMALL, crowd_body
+from stimuli.body_generator.crowd_levels import SMALL, coarse_levels
+from stimuli.crowd_bodies import GIRTHS, KEPT, crowd_body
 from stimuli.crowd_looks import LOOKS, difference, farthest, linear_rgb, looks
 from stimuli.crowd_motions import Style, drawn_manner, figure_of, least_distinctive, motion_of
 from stimuli.gait_model import load_gait_model
@@ -103,11 +104,20 @@ def test_coarse_bodies_are_as_large_as_fine_ones_and_move_like_them(kind):
     for level in body.levels[3:]:
         places = np.concatenate([surface.positions for surface in level])
         np.testing.assert_allclose(places.min(axis=0), fine.min(axis=0), atol=0.06)
-        np.testing.assert_allclose(places.max(axis=0), fine.max(axis=0), atol=0.06)  # hair is lifted
+        np.testing.assert_allclose(places.max(axis=0), fine.max(axis=0), atol=0.06)
         for surface in level:
             np.testing.assert_allclose(surface.weights.sum(axis=1), 1.0, atol=1e-6)
             assert surface.triangles.max() < len(surface.positions)
             assert set(np.unique(surface.triangles)) == set(range(len(surface.positions)))
+
+
+def test_the_coarse_levels_that_ship_are_those_of_the_bodies_that_ship():
+    """After bodies were baked anew: python -m stimuli.body_generator.crowd_levels"""
+    made = coarse_levels("man", "cropped")
+    for level, surfaces in zip(crowd_body("man", "cropped", "medium").levels[3:], made, strict=True):
+        for shipped, surface in zip(level, surfaces, strict=True):
+            for name in KEPT:
+                np.testing.assert_allclose(getattr(shipped, name), getattr(surface, name), atol=2e-4)
 
 
 def test_builds_differ_in_girth_and_not_in_height():

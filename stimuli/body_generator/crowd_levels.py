@@ -1,0 +1,100 @@
+"""python -m stimuli.body_generator.crowd_levels: the coarse levels of detail of crowds, from the baked bodies.
+
+Each surface of a body's coarsest level is simplified by quadric edge collapse (Garland & Heckbert 1997) and takes
+colours' shade, normals and joints from the vertices around. Made when bodies are released, not when they are drawn.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from stimuli.bodies import hair_names, load_body
+from stimuli.body import Surface
+from stimuli.crowd_bodies import KEPT, LEVELS
+from stimuli.skeleton import JOINTS, Floats
+
+SHARES = ((0.33, 3), (0.14, 2), (0.07, 2))
+"""Of each level: share of the triangles that is kept, and how many joints carry a vertex."""
+
+SMALL = ("eye", "iris", "pupil", "lash", "brow", "lip", "laces", "soles")
+"""Surfaces that a coarse level does without."""
+
+LEAST = 6  # triangles of a surface
+HAIR_LIFT = 0.008  # m, so that the corners of a coarse head do not stick out of coarse hair
+
+
+def simplified(surface: Surface, share: float, carriers: int) -> Surface:
+    """The surface with a share of its triangles, each vertex carried by so many joints at most."""
+    import fast_simplification
+
+    welded, corner = np.unique(np.round(surface.positions, 5), axis=0, return_inverse=True)
+    triangles = corner.ravel()[surface.triangles]
+    a, b, c = triangles.T
+    whole = triangles[(a != b) & (b != c) & (c != a)].astype(np.int32)
+    count = max(round(len(surface.triangles) * share), LEAST)
+    positions, triangles = fast_simplification.simplify(welded.astype(np.float32), whole, target_count=count, agg=5)
+    used, triangles = np.unique(triangles, return_inverse=True)
+    positions = positions[used].astype(float)
+    distance, near = cKDTree(surface.positions).query(positions, k=4)
+    shares = 1.0 / (distance + 1e-3) ** 2
+    shares /= shares.sum(axis=1, keepdims=True)
+
+    def around(values: Floats) -> Floats:
+        return np.asarray(np.einsum("vk,vkc->vc", shares, values[near]))
+
+    carried = np.zeros((len(surface.positions), len(JOINTS)))
+    np.add.at(carried, (np.arange(len(carried))[:, None], surface.joints), surface.weights)
+    joints, weights = _heaviest(around(carried), carriers)
+    normals = around(surface.normals)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
+    return replace(
+        surface,
+        positions=positions + (HAIR_LIFT if surface.name == "hair" else 0.0) * normals,
+        normals=normals,
+        occlusion=around(surface.occlusion[:, None])[:, 0],
+        joints=joints,
+        weights=weights,
+        triangles=triangles.reshape(-1, 3),
+    )
+
+
+def _heaviest(weights: Floats, carriers: int) -> tuple[np.ndarray, Floats]:
+    """Joints and weights (V, 4) of rows of weights (V, joints), the `carriers` heaviest kept."""
+    joints = np.argsort(-weights, axis=1, kind="stable")[:, :4]
+    kept = np.take_along_axis(weights, joints, axis=1)
+    kept[:, carriers:] = 0.0
+    return joints, kept / kept.sum(axis=1, keepdims=True)
+
+
+def coarse_levels(name: str, hair: str) -> list[list[Surface]]:
+    """LEVELS levels of a body with a haircut."""
+    surfaces = [surface for surface in load_body(name, hair).levels[-1] if surface.name not in SMALL]
+    return [[simplified(surface, *share) for surface in surfaces] for share in SHARES]
+
+
+def main() -> None:
+    """Write the coarse levels of every body and haircut; the same bodies always give the same bytes."""
+    parser = argparse.ArgumentParser(prog="python -m stimuli.body_generator.crowd_levels", description=main.__doc__)
+    parser.add_argument("--out", type=Path, default=Path("stimuli/data/bodies/crowd.npz"))
+    chosen = parser.parse_args()
+    assert len(SHARES) == LEVELS
+    stored: dict[str, Any] = {}
+    for name in ("woman", "man"):
+        for hair in hair_names(name):
+            for level, surfaces in enumerate(coarse_levels(name, hair)):
+                for surface in surfaces:
+                    for array, kind in KEPT.items():
+                        key = f"{name}/{hair}/{level}/{surface.name}/{array}"
+                        stored[key] = np.asarray(getattr(surface, array)).astype(kind)
+    np.savez_compressed(chosen.out, **stored)
+    print(f"{chosen.out}: {chosen.out.stat().st_size} bytes")
+
+
+if __name__ == "__main__":
+    main()
