@@ -23,7 +23,8 @@ class Source:
     """What a reader understood of its file, to be shown to the person who gave it.
 
     The axes are those of the file, written as "+Y" or "-X"; forward is "" where nothing moves or points.
-    names is the table of joint names that fitted ("CMU", "Mixamo", ... or "topology").
+    names is the table of joint names that fitted ("CMU", "Mixamo", ... or "topology"); residual is m, the root mean
+    square distance of markers from the skeleton fitted to them, nan where there are no markers.
     """
 
     format: str
@@ -32,6 +33,7 @@ class Source:
     forward: str
     names: str
     file_rate: float  # Hz as written in the file, before it was set to the whole rate meant
+    residual: float = float("nan")
 
 
 @dataclass(frozen=True, order=True)

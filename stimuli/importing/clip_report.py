@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from stimuli.clip import Clip, FootEvent
+from stimuli.clip import Clip, FootEvent, world_positions
 from stimuli.events import GaitError, GaitMeasures, events_of, foot_paths, measure_paths
+from stimuli.motion_files.axes import leg_length
 from stimuli.motion_files.reading import read_clip
 
 
@@ -40,11 +42,18 @@ def clip_report(path: Path) -> dict[str, Any]:
         "step_frequency_steps_min": _number(measures.gait.step_frequency if measures else None),
         "step_length_m": _number(measures.gait.step_length if measures else None),
         "walk_ratio_m_min": _number(measures.gait.walk_ratio if measures else None),
+        "step_length_left_m": _number(measures.step_length_left if measures else None),
+        "step_length_right_m": _number(measures.step_length_right if measures else None),
         "step_width_m": _number(measures.step_width if measures else None),
         "stance_share": {
             "left": _number(measures.stance_share_left if measures else None),
             "right": _number(measures.stance_share_right if measures else None),
         },
+        "normalised": {
+            "leg_length": _normalised(measures, leg_length(world_positions(clip), clip.roles)),
+            "height": _normalised(measures, clip.subject.height),
+        },
+        "marker_residual_mm": _number(1e3 * source.residual),
         "warnings": warnings,
     }
 
@@ -67,6 +76,13 @@ def clip_lines(report: dict[str, Any]) -> list[str]:
             f"  step          {report['step_length_m']:.3f} m at {report['step_frequency_steps_min']:.1f} steps/min",
             f"  walk ratio    {report['walk_ratio_m_min']:.5f} m·min",
         ]
+    for body, gait in report["normalised"].items():
+        if gait:
+            over = f"over {body.replace('_', ' ')} {gait['length_m']:.2f} m"
+            names = ("speed", "step_length", "step_frequency", "walk_ratio")
+            lines.append(f"  {over} (Hof 1996): " + ", ".join(f"{n.replace('_', ' ')} {gait[n]:.3f}" for n in names))
+    if report["marker_residual_mm"] is not None:
+        lines.append(f"  markers       {report['marker_residual_mm']:.1f} mm from the skeleton (root mean square)")
     return lines + [f"  Note: {warning}" for warning in report["warnings"]]
 
 
@@ -85,6 +101,14 @@ def _measured(clip: Clip) -> tuple[tuple[FootEvent, ...], GaitMeasures | None, l
     if measures.on_the_spot:
         warnings.append("the walker stays on the spot; the speed is that of the standing feet, as on a treadmill")
     return events, measures, warnings
+
+
+def _normalised(measures: GaitMeasures | None, length: float | None) -> dict[str, float | None] | None:
+    """The gait over a body length (m) without units (Hof 1996); None where either is not known."""
+    if measures is None or length is None or not length > 0:
+        return None
+    gait = measures.gait.normalised(length)
+    return {"length_m": _number(length)} | {key: _number(value) for key, value in asdict(gait).items()}
 
 
 def _times(events: tuple[FootEvent, ...], kind: str) -> dict[str, list[float]]:

@@ -239,9 +239,10 @@ def _judged(
             marker = there[:, joint] + rotations[:, joint] @ local
             distance = np.sum((raw[place] - marker) ** 2, axis=-1)
             squares[place] = distance[np.isfinite(distance)]
+    residual = float(np.sqrt(np.mean(np.concatenate(list(squares.values())))))
     return MarkerFit(
-        clip=clip,
-        residual=float(np.sqrt(np.mean(np.concatenate(list(squares.values()))))),
+        clip=replace(clip, source=replace(clip.source, residual=residual)),
+        residual=residual,
         marker_residuals={place: float(np.sqrt(np.mean(s))) for place, s in squares.items()},
         centre_distances={
             joint: float(np.linalg.norm(centres[joint] - there[:, index], axis=-1).max())

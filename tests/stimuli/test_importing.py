@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from stimuli.actor_library import actor_of, imported_names
 from stimuli.importing.clip_report import clip_lines, clip_report
@@ -76,6 +78,50 @@ def test_a_standing_trial_is_described_and_has_no_gait():
     assert report["steps_used"] == 0
     assert any("whole stride" in warning for warning in report["warnings"])
     assert any("Note" in line for line in clip_lines(report))
+
+
+@needs_captures
+def test_a_clip_of_markers_tells_its_steps_its_gait_without_units_and_its_residual():
+    """Normalised by hand from the subject's height of 1.755 m (Hof 1996): v / sqrt(g H), L / H, f sqrt(H / g)."""
+    pytest.importorskip("ezc3d")
+    report = clip_report(MOCAP / "c3d" / "schreiber-moissenet" / "2014019_C4_05.c3d")
+    over = report["normalised"]["height"]
+    height = over["length_m"]
+    assert over["speed"] == pytest.approx(report["speed_m_s"] / (9.81 * height) ** 0.5, rel=1e-4)
+    assert over["step_length"] == pytest.approx(report["step_length_m"] / height, rel=1e-4)
+    assert over["step_frequency"] == pytest.approx(
+        report["step_frequency_steps_min"] / 60 * (height / 9.81) ** 0.5, rel=1e-4
+    )
+    assert report["normalised"]["leg_length"]["length_m"] == pytest.approx(0.82, abs=0.01)
+    assert report["step_length_left_m"] + report["step_length_right_m"] == pytest.approx(
+        2 * report["step_length_m"], rel=0.05
+    )
+    assert 0.0 < report["marker_residual_mm"] < 15.0
+
+
+@needs_captures
+@given(st.data())
+@settings(max_examples=20, deadline=None)
+def test_no_mutation_of_a_clip_leaves_half_an_actor_or_escapes_as_another_error(tmp_path_factory, data):
+    """Single numbers and words of a walk changed: it becomes an actor, or one sentence and an empty library."""
+    folder = described(tmp_path_factory.mktemp("mutant"))
+    lines = (CMU / "cmu_07_10.bvh").read_text().splitlines()
+    for _ in range(data.draw(st.integers(1, 4))):
+        line = data.draw(st.integers(0, len(lines) - 1))
+        words = lines[line].split(" ")
+        word = data.draw(st.integers(0, len(words) - 1))
+        words[word] = data.draw(st.sampled_from(["0", "nan", "inf", "1e9", "-180", "90", "3", "", "JOINT", "}"]))
+        lines[line] = " ".join(words)
+    (folder / "walk.bvh").write_text("\n".join(lines))
+    library = folder / "library"
+    refusal = ""
+    try:
+        import_folder(folder, "mutant", library)
+    except MotionFileError as error:
+        refusal = str(error)
+    left = [path.name for path in library.iterdir()] if library.exists() else []
+    assert left == ([] if refusal else ["mutant.npz"])
+    assert "\n" not in refusal
 
 
 @needs_captures
