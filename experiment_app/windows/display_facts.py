@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from typing import Any
 
 import glfw
@@ -56,10 +55,3 @@ def _on_x() -> str:
     if not owner:
         return "none"
     return os.environ.get("XDG_CURRENT_DESKTOP") or f"window {owner:#x}"
-
-
-def scheduling() -> str:
-    """How the operating system schedules this program: real-time, or as any other."""
-    if sys.platform.startswith("linux"):
-        return "real-time" if os.sched_getscheduler(0) in (os.SCHED_FIFO, os.SCHED_RR) else "normal"
-    return "unknown"

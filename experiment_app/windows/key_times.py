@@ -50,25 +50,25 @@ class KeyTimes(Protocol):
 
 
 class NotedTimes:
-    """Times by key and direction, oldest first, until each is taken."""
+    """Stamps by key and direction, oldest first, until each is taken."""
 
     def __init__(self) -> None:
-        self._noted: dict[tuple[int, bool], deque[float]] = defaultdict(deque)
+        self._noted: dict[tuple[int, bool], deque[Stamp]] = defaultdict(deque)
 
-    def note(self, keycode: int, down: bool, time: float) -> None:
-        """Adds the time (s) of an event."""
-        self._noted[keycode, down].append(time)
+    def note(self, keycode: int, down: bool, stamp: Stamp) -> None:
+        """Adds the stamp of an event."""
+        self._noted[keycode, down].append(stamp)
 
-    def take(self, keycode: int, down: bool) -> float | None:
-        """The oldest time of this key and direction, once."""
-        times = self._noted[keycode, down]
-        return times.popleft() if times else None
+    def take(self, keycode: int, down: bool) -> Stamp | None:
+        """The oldest stamp of this key and direction, once."""
+        stamps = self._noted[keycode, down]
+        return stamps.popleft() if stamps else None
 
     def forget(self, before: float = float("inf")) -> None:
         """Drops the stamps before a moment (s)."""
-        for times in self._noted.values():
-            while times and times[0] < before:
-                times.popleft()
+        for stamps in self._noted.values():
+            while stamps and stamps[0].time < before:
+                stamps.popleft()
 
 
 class ArrivalTimes:

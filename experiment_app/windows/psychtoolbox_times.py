@@ -58,13 +58,12 @@ class PsychtoolboxTimes:
             while left:
                 event, left = self._hid("KbQueueGetEvent", keyboard)
                 if isinstance(event, dict):
-                    at = float(event["Time"]) - self._offset
-                    self._noted.note(_code(int(event["Keycode"]) - 1), bool(event["Pressed"]), at)
+                    stamp = Stamp(float(event["Time"]) - self._offset, self.name, UNCERTAINTY_MS)
+                    self._noted.note(_code(int(event["Keycode"]) - 1), bool(event["Pressed"]), stamp)
 
     def take(self, keycode: int, down: bool) -> Stamp | None:
         """The queue's time of the oldest event of this key not yet taken."""
-        noted = self._noted.take(_code(keycode), down)
-        return None if noted is None else Stamp(noted, self.name, UNCERTAINTY_MS)
+        return self._noted.take(_code(keycode), down)
 
     def forget(self) -> None:
         """Drops what GLFW has not reported for a while; its connection may be ahead of GLFW's for a moment."""

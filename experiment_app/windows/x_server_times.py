@@ -19,9 +19,6 @@ WRAP_MS = 1 << 32
 STEP = 0.001
 """s between two readings of the server's clock."""
 
-PROMPT = 0.0005
-"""s within which an event arrives when nothing holds it up."""
-
 EXCHANGES = 20
 """Questions asked to measure the server's clock, about 2 ms in all."""
 
@@ -59,15 +56,13 @@ class XServerTimes:
         for event in self._events[:count]:
             self._x11.XNextEvent(self._display, ctypes.byref(event))
             if event.type in (KEY_PRESS, KEY_RELEASE):
-                at = self._on_our_clock(event.key.time, now)
-                self._noted.note(event.key.keycode, event.type == KEY_PRESS, at)
+                self._noted.note(event.key.keycode, event.type == KEY_PRESS, self._stamp(event.key.time, now))
         for event in reversed(self._events[:count]):
             self._x11.XPutBackEvent(self._display, ctypes.byref(event))
 
     def take(self, keycode: int, down: bool) -> Stamp | None:
         """The server's time of the oldest event of this key not yet taken."""
-        noted = self._noted.take(keycode, down)
-        return None if noted is None else Stamp(noted, self.name, round(0.5 + 1e3 * self._error, 3))
+        return self._noted.take(keycode, down)
 
     def forget(self) -> None:
         """All that was noted has been handled."""
@@ -86,20 +81,19 @@ class XServerTimes:
     def close(self) -> None:
         """GLFW closes its connection itself."""
 
-    def _on_our_clock(self, server_ms: int, arrived: float) -> float:
-        """s on our clock of a stamp of the server's, for an event that had arrived by `arrived` (s)."""
-        return sharpened(unwrapped(server_ms, arrived + self._offset) - self._offset, arrived)
+    def _stamp(self, server_ms: int, arrived: float) -> Stamp:
+        """The stamp of an event that the server put at `server_ms` and that had arrived by `arrived` (s)."""
+        middle, half = possible(unwrapped(server_ms, arrived + self._offset) - self._offset, arrived)
+        return Stamp(middle, self.name, round(1e3 * (half + self._error), 3))
 
 
-def sharpened(server: float, arrived: float) -> float:
-    """s: the most likely moment of an event that a clock cut to whole ms put at `server` and that arrived at `arrived`.
+def possible(server: float, arrived: float) -> tuple[float, float]:
+    """s: middle and half the length of the time in which an event can have happened.
 
-    It happened in the ms that began at `server`. An event that arrives at once, as most do, tells where in that ms;
-    one that was held up by drawing does not, and is put into its middle.
+    It happened in the ms that began at `server`, as the server's clock is cut to whole ms, and before it arrived.
     """
-    if arrived - server > STEP + PROMPT:
-        return server + STEP / 2.0
-    return min(max(arrived, server), server + STEP)
+    latest = min(max(arrived, server), server + STEP)
+    return (server + latest) / 2.0, (latest - server) / 2.0
 
 
 def unwrapped(server_ms: int, now: float) -> float:
