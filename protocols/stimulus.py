@@ -46,7 +46,9 @@ class MakingPart(SettingsPart):
         "captured", description="captured: the actor's own walk at that speed. The others are in docs/methods.md."
     )
     source_speed: SpeedSetting | None = Field(
-        None, description="m/s of the captured walk it is made from (timewarp, poulaine); the shown speed if left out."
+        None,
+        description="m/s of the captured walk it is made from; left out, the nearest other captured speed (timewarp, "
+        "poulaine), the two around the shown speed (blend, fourier) or all others (pca).",
     )
     points: Annotated[AsFactor | AsTable | Annotated[Points, Tag(CONSTANT)], by_form] = Field(
         5, description="Control points of a poulaine: 4 (E, V, I, A) or 5 (and M)."
@@ -152,7 +154,7 @@ class Stimulus(SettingsPart, Appearance):
 
 @dataclass(frozen=True)
 class Making:
-    """How a walk is made; see MakingPart. source_speed: m/s or None, the speed shown; style: None, the actor's own."""
+    """How a walk is made; see MakingPart. source_speed: m/s or None, chosen by the method; style: None, the actor's."""
 
     method: Method = "captured"
     source_speed: float | None = None
