@@ -16,6 +16,7 @@ from protocols.design import conditions, make_trials, tracks
 from protocols.mistake import Mistake, Place
 from protocols.order import AdaptiveOrder
 from protocols.parts import Level
+from protocols.resuming import in_words
 from protocols.setting import leaves
 from protocols.stimulus import Walk
 from protocols.study import Study, Words
@@ -143,6 +144,7 @@ def summary(file: StudyFile) -> list[str]:
         f"after {len(study.practice)} training trials",
         f"  {order_in_words(study)}",
         f"  about {math.ceil(expected_minutes(study))} minutes; {study.participants.planned} participants planned",
+        f"  an interrupted run {in_words(study.resume)}",
         "",
         "Balance (one dot = one trial of participant 1, left to right in the order shown)",
     ]

@@ -24,6 +24,15 @@ def refusal(resume: Resume, gap: float) -> str:
     return ""
 
 
+def in_words(resume: Resume) -> str:
+    """What the policy does to an interrupted run, as half a sentence."""
+    if resume.policy == "never":
+        return "is not continued"
+    what = {"trial": "with the interrupted trial", "block": "with the first trial since the last break"}[resume.policy]
+    within = "" if resume.longest_gap is None else f", within {resume.longest_gap:g} min"
+    return f"goes on {what}{within}"
+
+
 def again(plan: Plan, progress: Progress) -> Progress:
     """The progress without what the study's policy says is to be done again, though it was finished.
 

@@ -52,6 +52,18 @@ def test_a_run_may_go_on_within_the_longest_gap_only():
     assert resuming.refusal(fifteen, -600.0) == "", "a clock that was set back tells nothing"
 
 
+@pytest.mark.parametrize(
+    ("resume", "words"),
+    [
+        (Resume(), "goes on with the interrupted trial"),
+        (Resume(policy="block", longest_gap=30.0), "goes on with the first trial since the last break, within 30 min"),
+        (Resume(policy="never"), "is not continued"),
+    ],
+)
+def test_check_says_what_becomes_of_an_interrupted_run(resume, words):
+    assert resuming.in_words(resume) == words
+
+
 def test_policy_never_refuses_at_once():
     assert "not continued" in resuming.refusal(Resume(policy="never"), 0.0)
 
