@@ -258,15 +258,17 @@ def design_picture(file: StudyFile, path: Path) -> None:
 
     study = file.study
     people = min(study.participants.planned, 12)
+    placed = study.order.of if isinstance(study.order, AdaptiveOrder) else ""
+    factors = {name: levels for name, levels in study.factors.items() if name != placed} or study.factors
     orders = [make_trials(study, likely_seed(study, number), number) for number in range(1, people + 1)]
     figure, axes = plt.subplots(
-        len(study.factors),
+        len(factors),
         2,
-        figsize=(13, 2.2 + 1.6 * len(study.factors)),
+        figsize=(13, 2.2 + 1.6 * len(factors)),
         width_ratios=(5, 1),
         squeeze=False,
     )
-    for (factor, levels), (left, right) in zip(study.factors.items(), axes, strict=True):
+    for (factor, levels), (left, right) in zip(factors.items(), axes, strict=True):
         grid = np.array([[levels.index(t.levels[factor]) for t in order] for order in orders])
         colours = plt.get_cmap("viridis", len(levels))
         left.imshow(grid, aspect="auto", cmap=colours, vmin=-0.5, vmax=len(levels) - 0.5, interpolation="nearest")

@@ -118,6 +118,7 @@ def run_live(
                 seed=seed,
                 again=new_run,
             )
+        say(f"Participant {participant} is number {opened.participant_number}{_group(opened)}.")
         sitting = crash_note(opened.run.folder, opened.run.sittings + 1)
         with (
             sitting,
@@ -180,6 +181,11 @@ def _minutes_since(old: Run, say: Callable[[str], None]) -> float:
     if gap < -1.0:
         say("Note: the computer's clock reads earlier than the run's last record; how long ago that was is not known.")
     return max(gap, 0.0)
+
+
+def _group(opened: OpenRun) -> str:
+    """The group that the program assigned, for the experimenter, as " (viewing headset)"."""
+    return f" ({', '.join(f'{name} {level}' for name, level in opened.group.items())})" if opened.group else ""
 
 
 def prepare(plan: Plan, say: Callable[[str], None]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -44,6 +44,7 @@ class OpenRun:
     seed: int
     participant_number: int
     continued: bool
+    group: Mapping[str, str] = field(default_factory=dict)  # that the program assigned
     torn: int = 0  # bytes of a line that was cut off, set aside when the run was opened again
 
 
@@ -100,7 +101,8 @@ def open_new(
         pilot=pilot,
         group=group,
     )
-    return OpenRun(run, make_plan(study.study, seed, order, group), create_journal(run, header), seed, order, False)
+    plan = make_plan(study.study, seed, order, group)
+    return OpenRun(run, plan, create_journal(run, header), seed, order, False, group)
 
 
 def open_unfinished(run: Run, *, display: Mapping[str, Any]) -> OpenRun:
@@ -109,7 +111,9 @@ def open_unfinished(run: Run, *, display: Mapping[str, Any]) -> OpenRun:
     journal, run, torn = reopen_journal(run)
     journal.write([Continued(0.0, _utc_now(), torn, display, recorded_versions(), run.interruption)])
     plan = remaining(plan, resuming.again(plan, progress(run)))
-    return OpenRun(run, plan, journal, header["seed"], header["participant_number"], True, torn)
+    return OpenRun(
+        run, plan, journal, header["seed"], header["participant_number"], True, header.get("group") or {}, torn
+    )
 
 
 def recorded_plan(run: Run) -> Plan:

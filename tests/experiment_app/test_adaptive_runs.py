@@ -98,6 +98,34 @@ def test_after_an_interruption_the_levels_go_on_as_if_there_had_been_none(rule, 
     assert any(line["kind"] == "continue" for line in journal_lines(again.run.journal)[0])
 
 
+def test_a_block_that_is_done_again_counts_with_its_second_answers(tmp_path, monkeypatch):
+    import experiment_app.loop as loop
+
+    text = adaptive("staircase").text.replace("practice:", "resume: {policy: block}\npractice:", 1)
+    file = parse_study("adaptive.yaml", text)
+    finished = 0
+
+    def stopping(session, event):
+        """Closes the window after the sixth trial, in the middle of the second block of four tracks."""
+        nonlocal finished
+        before = len(session.emitted)
+        session = handle(session, event)
+        finished += sum(isinstance(r, TrialRecord) and not r.practice for r in session.emitted[before:])
+        return handle(session, Closed(event.time, "window closed")) if finished == 6 else session
+
+    monkeypatch.setattr(loop, "handle", stopping)
+    play(opened(tmp_path, study=file))
+    monkeypatch.setattr(loop, "handle", handle)
+    again = opened(tmp_path, study=file)
+    play(again)
+    attempts = [(trial["number"], trial["attempt"]) for trial in trials(again.run)]
+    assert attempts[:8] == [(1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (5, 2), (6, 2)]
+    tracks = begin_tracks(file.study)
+    for trial in [trial for trial in trials(again.run) if (trial["number"], trial["attempt"]) not in ((5, 1), (6, 1))]:
+        assert trial["factors"]["start"] == tracks[trial["track"]].level
+        tracks = after_response(file.study, tracks, trial["track"], {**trial["factors"], **trial["response"]})
+
+
 def test_what_counts_as_an_answer_is_what_the_journal_says(tmp_path):
     run = opened(tmp_path, study=adaptive("staircase"))
     play(run)
