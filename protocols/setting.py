@@ -7,6 +7,7 @@ speed: {$actor: {F1: 1.24, M1: {$pace: {slow: 0.89, fast: 1.31}}}}
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
@@ -131,7 +132,7 @@ def unfit(value: Any, kind: Any, where: Place, place: Place) -> Iterator[Mistake
         elif found["type"] == "greater_than" and found["ctx"]["gt"] == 0.0:
             yield Mistake(where, f"{value} must be more than 0")
         elif set(found.get("ctx", {})) & LIMITS.keys():
-            limits = " and ".join(f"{LIMITS[name]} {limit:g}" for name, limit in found["ctx"].items() if name in LIMITS)
+            limits = " and ".join(f"{LIMITS[end]} {limit:g}" for end, limit in found["ctx"].items() if end in LIMITS)
             yield Mistake(where, f"{value} is out of range; for {name} it must be {limits}")
         elif found["type"] == "literal_error":
             yield Mistake(where, f"{value} is not allowed for {name}; allowed: {found['ctx']['expected']}")
@@ -139,13 +140,13 @@ def unfit(value: Any, kind: Any, where: Place, place: Place) -> Iterator[Mistake
             yield Mistake(where, f"{value!r}: {found['msg'][0].lower() + found['msg'][1:]}, for {name}")
 
 
-class SettingsPart(Part):
+class SettingsPart(Part, ABC):
     """A part some of whose values are settings; `takes()` says which, and the type of their values."""
 
     @classmethod
+    @abstractmethod
     def takes(cls) -> dict[str, Any]:
         """Field to the type of its values, for every field that is a setting."""
-        raise NotImplementedError
 
     def settings(self, place: Place) -> Iterator[Given]:
         """Every setting that is given, with its place under `place`."""

@@ -85,6 +85,11 @@ class MakingPart(SettingsPart):
             "sex": Sex, "walk_ratio": WalkRatio,
         }  # fmt: skip
 
+    def over(self, base: MakingPart | None) -> MakingPart:
+        """The base with what is given here in its place."""
+        given = {name: getattr(self, name) for name in self.model_fields_set}
+        return self if base is None else base.model_copy(update=given)
+
     def resolved(self, levels: Mapping[str, Level]) -> Making:
         """The way of making in a trial with these levels."""
         return Making(**{name: value_of(getattr(self, name), levels) for name in self.takes()})
@@ -141,7 +146,8 @@ class Stimulus(SettingsPart, Appearance):
         given = alternative or Alternative()
         if self.crowd is not None:
             return Walk("", "", 0.0, crowd=self.crowd.resolved(levels, given.crowd))
-        body, making = given.body or self.body, given.making or self.making
+        body = given.body or self.body
+        making = given.making.over(self.making) if given.making is not None else self.making
         frequency = value_of(given.step_frequency, levels)
         return Walk(
             actor=str(value_of(given.actor or self.actor, levels)),

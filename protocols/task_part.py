@@ -1,7 +1,12 @@
-"""What every task's part of a study file answers, so that plan, session, check and simulation know no task."""
+"""What every task's part of a study file answers, so that plan, session, check and simulation know no task.
+
+A new task is three things: a trial as a value (protocols.task.TaskTrial), a part of the study file that begins it,
+named in protocols.study.Task, and what a simulated observer does in it (experiment_app.behaviour).
+"""
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, ClassVar
 
@@ -46,9 +51,9 @@ class TaskPart(SettingsPart):
         return ""
 
     @property
+    @abstractmethod
     def seconds(self) -> float:
         """s that a participant typically takes for a trial."""
-        raise NotImplementedError
 
     @property
     def balanced(self) -> bool:
@@ -56,9 +61,9 @@ class TaskPart(SettingsPart):
         return False
 
     @property
+    @abstractmethod
     def key_part(self) -> TaskKeys:
         """The task's keys."""
-        raise NotImplementedError
 
     def keys_for(self, participant_number: int) -> dict[str, str]:
         """What each key is for to the key, for the participant of this number (from 1)."""
@@ -72,9 +77,9 @@ class TaskPart(SettingsPart):
         """Every walk that must be possible for a trial with these levels."""
         return list(self.walks(stimulus, levels).values())
 
+    @abstractmethod
     def begin(self, setup: Setup) -> TaskTrial:
         """A trial waiting for its first frame."""
-        raise NotImplementedError
 
     def mistakes(self, study: Study) -> Iterator[Mistake]:
         """What is wrong with the task in this study, beside its settings: here, keys used twice."""

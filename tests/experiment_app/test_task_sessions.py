@@ -92,8 +92,8 @@ def test_a_rated_pair_is_in_step():
 
 def test_one_walk_alone_can_be_rated_in_the_whole_picture():
     file = edited("fourier_naturalness")
-    start, end = file.text.index("    original:\n"), file.text.index("    synthetic:")
-    text = file.text[:start] + file.text[end:].replace("style: *style", "style: sad")
+    start, end = file.text.index("    original: {"), file.text.index("    synthetic:")
+    text = file.text[:start] + file.text[end:]
     scene = stage(at_a_trial(parse_study("one.yaml", text).study))
     assert (len(scene.walkers), scene.beside) == (1, None)
     assert scene.page is not None
