@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass, field
 
 import glfw
@@ -9,8 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from experiment_app.errors import UsageError
+from experiment_app.windows import psychtoolbox_times
 from experiment_app.windows.gamepad import Gamepad
-from experiment_app.windows.key_times import NotedTimes, Stamp
+from experiment_app.windows.key_times import NotedTimes, Stamp, open_key_times
 from experiment_app.windows.x_server_times import WRAP_MS, possible, unwrapped
 from protocols.adjustment import AdjustmentTask, AdjustmentTrial, begin
 from protocols.events import FocusLost, KeyDown, KeyUp, Shown
@@ -103,3 +106,15 @@ def test_losing_the_focus_ends_a_hold_at_that_moment():
     for event in (KeyDown(1.0, "right"), FocusLost(1.25), KeyUp(1.9, "right"), KeyDown(2.0, "enter")):
         trial = trial.handle(event)
     assert trial.setting == pytest.approx(102.5)
+
+
+@pytest.mark.parametrize("keyboard", ["x-server", "psychtoolbox"])
+def test_a_source_of_key_times_that_is_not_there_is_a_sentence_with_the_way_out(monkeypatch, keyboard):
+    monkeypatch.setattr(psychtoolbox_times, "find_spec", lambda _: None)
+    monkeypatch.delitem(sys.modules, "psychtoolbox", raising=False)
+    with pytest.raises(UsageError, match=rf"--keyboard {keyboard}: .*; leave --keyboard out"):
+        open_key_times(keyboard, None)
+
+
+def test_without_an_x_server_keys_count_from_their_arrival():
+    assert open_key_times("auto", None).name == "arrival"
