@@ -104,14 +104,23 @@ def read_journal(path: Path, name: str = "") -> RecordedRun:
 
 def journals_of(folder: Path) -> list[Path]:
     """The journals of a study's folder, by participant and run; raises AnalysisError when there are none."""
+    if folder.is_file():
+        raise AnalysisError(f"{folder} is a file; name the study's folder of data, as data/walk_ratio.")
     if not folder.is_dir():
         raise AnalysisError(f"There is no folder {folder}; name the study's folder inside the data folder.")
     paths = sorted(folder.glob("sourcedata/sub-*/run-*/journal.jsonl"), key=_natural)
     if not paths:
         raise AnalysisError(
-            f"{folder} holds no recorded run (sourcedata/sub-ID/run-N/journal.jsonl); record or simulate one first."
+            f"{folder} holds no recorded run (sourcedata/sub-ID/run-N/journal.jsonl); {_way_out(folder)}."
         )
     return paths
+
+
+def _way_out(folder: Path) -> str:
+    """What to name instead: a study's folder inside this one, or the one around it."""
+    around = [path.parent for path in (folder, *folder.parents) if path.name == "sourcedata"]
+    meant = [*around, *sorted(path.parent for path in folder.glob("*/sourcedata"))]
+    return f"name the study's folder, as {meant[0]}" if meant else "record or simulate one first"
 
 
 def read_study(folder: Path, unfinished: bool = False) -> RecordedStudy:

@@ -221,7 +221,11 @@ def _against(test: Mapping[str, Any], levels: Mapping[str, tuple[str, ...]]) -> 
     each, against = str(test["each"]), test["against"]
     if not isinstance(against, Mapping):
         against = dict.fromkeys(levels.get(each, ()), against)
-    return TTestPlan(each, _by_level(against), str(test.get("label", "reference value")), test.get("where"))
+    values = _by_level(against)
+    if each in levels:  # values of levels that are not shown (a copied study with fewer actors) test nothing
+        shown = {numeric_label(level) for level in levels[each]}
+        values = {level: value for level, value in values.items() if numeric_label(level) in shown}
+    return TTestPlan(each, values, str(test.get("label", "reference value")), test.get("where"))
 
 
 def _comparison(test: Mapping[str, Any]) -> ComparisonPlan:

@@ -20,7 +20,7 @@ def drop_out(folder: Path, participant: str) -> Run:
         raise UsageError(f"{folder} is no study's folder of data; name one, as data/walk_ratio.")
     runs = participant_runs(folder.parent, folder.name, participant)
     if not runs:
-        known = ", ".join(sorted(p.name[4:] for p in (folder / "sourcedata").glob("sub-*"))[:20])
+        known = ", ".join(sorted(p.name[4:] for p in (folder / "sourcedata").glob("sub-*")))
         raise UsageError(f"there is no participant {participant} in {folder}; there are: {known or 'none'}.")
     run = runs[-1]
     if run.end:

@@ -47,7 +47,7 @@ def plan_withdrawal(folder: Path, participant: str) -> Withdrawal:
     if not person.is_dir():
         person = data / f"{LEAVING}{participant}"  # a withdrawal that was killed half-way is finished
     if not person.is_dir():
-        known = ", ".join(sorted(p.name[4:] for p in data.glob("sub-*"))[:20])
+        known = ", ".join(sorted(p.name[4:] for p in data.glob("sub-*")))
         raise UsageError(f"there is no participant {participant} in {data}; there are: {known or 'none'}.")
     for journal in person.glob(f"run-*/{JOURNAL}"):
         with open(journal, "rb") as file:

@@ -12,7 +12,7 @@ import pytest
 from analysis import AnalysisError, anova
 from analysis.exclusions import matching
 from analysis.journal import read_journal, read_study
-from analysis.plan import read_plan
+from analysis.plan import plan_of, read_plan
 from analysis.planned import AnalysisOutcome, analyse
 from tests.analysis.recorded import PERCEIVED, journal_lines, study_text, write_run, write_study
 
@@ -201,12 +201,29 @@ def test_a_condition_that_cannot_be_read_names_the_columns() -> None:
         matching(trials, "__import__('os')")
 
 
+def test_reference_values_of_actors_that_are_not_shown_do_not_stop_the_other_tests() -> None:
+    tests = [
+        {"each": "actor", "against": {"F1": 0.0069, "F2": 0.0056, "M1": 0.007}},
+        {"each": "speed", "against": {"0.8": 0.006, 1: 0.0065, 1.2: 0.007}},
+    ]
+    factors = {"actor": ["F1", "M1"], "speed": [0.8, 1.0]}
+    by_actor, by_speed = plan_of(
+        {"study": "s", "factors": factors, "analysis": {"measure": "walk_ratio", "t_tests": tests}}
+    ).t_tests
+    assert by_actor.against == {"F1": 0.0069, "M1": 0.007}
+    assert list(by_speed.against.values()) == [0.006, 0.0065]
+
+
 def test_missing_folders_and_empty_ones(tmp_path: Path) -> None:
     with pytest.raises(AnalysisError, match="There is no folder"):
         analyse(tmp_path / "nowhere", tmp_path / "out")
     with pytest.raises(AnalysisError, match="holds no recorded run"):
         analyse(tmp_path, tmp_path / "out")
     write_run(tmp_path / "s", "P01", journal_lines("P01", 1, reason=None))
+    with pytest.raises(AnalysisError, match=r"name the study's folder, as .*s\.$"):
+        analyse(tmp_path, tmp_path / "out")
+    with pytest.raises(AnalysisError, match=r"name the study's folder, as .*s\.$"):
+        analyse(tmp_path / "s" / "sourcedata" / "sub-P01", tmp_path / "out")
     with pytest.raises(AnalysisError, match="none of the 1 recorded runs can be analysed"):
         analyse(tmp_path / "s", tmp_path / "out")
 
