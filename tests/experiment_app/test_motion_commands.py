@@ -162,3 +162,19 @@ def test_check_draws_what_an_actor_covers_where_a_study_asks_for_more(tmp_path, 
     assert "speed 1.9 m/s is outside the cycles there are: 0.7 to 1.42 m/s" in said
     assert "X asked for" in said
     assert "actor F1" in said
+
+
+@needs_captures
+@pytest.mark.parametrize("body", ["", "woman"])
+def test_what_remains_of_the_slide_is_measured_on_the_drawn_body_for_the_trials_record(folder, body):
+    """Of an imported actor on his own body and on the other sex's, as the journal takes it down at the response."""
+    from experiment_app.scene import Camera, Scene, Walker
+    from experiment_app.walkers import measured_gait
+
+    assert run(["actor", "import", str(folder), "--name", "anna"]) == 0
+    walker = Walker("anna", 1.0, 97.0, 0.0, body=body)
+    measured = measured_gait(Scene((walker,), Camera(view="side")))
+    assert measured["speed"] == pytest.approx(1.0, rel=1e-3)
+    assert measured["step_frequency"] == pytest.approx(97.0, rel=1e-3)
+    assert 0.0 <= measured["slide_mean_mm"] <= 5.0
+    assert measured["slide_mean_mm"] <= measured["slide_peak_mm"] <= 10.0
