@@ -172,7 +172,9 @@ def test_a_whole_session_with_a_pause_is_in_the_journal(sit):
         assert trial["measured"]["speed"] == pytest.approx(trial["factors"]["speed"], rel=0.005)
     frames = [line for line in lines if line["kind"] == "frames"]
     assert len(frames[0]["flips"]) == len(frames[0]["poses"]) == training["frames"]
-    assert all(line["source"] == "x-server" and line["uncertainty_ms"] <= 1.0 for line in keys)
+    # a machine too busy to bring the server's note in time falls back on the arrival, and says so
+    assert {line["source"] for line in keys} <= {"x-server", "arrival"}
+    assert any(line["source"] == "x-server" and line["uncertainty_ms"] <= 1.0 for line in keys)
     assert lines[0]["display"]["swap_waits_for_display"] is False
     certificate = (person.folder / "data" / "walk_ratio" / "sourcedata" / "sub-P01" / "run-1" / "timing.md").read_text()
     assert "Not synchronised" in certificate
