@@ -100,16 +100,19 @@ def withdraw(
 
 
 def _make_again(folder: Path, made: Derived) -> None:
-    """Makes an export or a report again from the journals that are left; removes an export nobody is left in."""
+    """Makes an export or a report again from the journals that are left; removes one nobody is left in."""
     from analysis.exports.exporting import export as write_export
     from analysis.exports.tree import remove_tree
     from analysis.planned import analyse
 
+    somebody = any((folder / "sourcedata").glob("sub-*/run-*/journal.jsonl"))
     if made.what == "report":
-        new = analyse(folder, Path(made.out)).paths
+        new = analyse(folder, Path(made.out)).paths if somebody else ()
         for stale in {Path(made.out) / name for name in made.files} - set(new):
             stale.unlink(missing_ok=True)
-    elif any((folder / "sourcedata").glob("sub-*/run-*/journal.jsonl")):
+        if not any(Path(made.out).iterdir()):
+            Path(made.out).rmdir()
+    elif somebody:
         write_export(folder, made.to, Path(made.out), over_edits=True)
     else:
         remove_tree(Path(made.out))

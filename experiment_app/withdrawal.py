@@ -59,7 +59,8 @@ def plan_withdrawal(folder: Path, participant: str) -> Withdrawal:
 def withdraw(plan: Withdrawal, remake: Callable[[Derived], None], say: Callable[[str], None]) -> bool:
     """Carries a withdrawal out; False when something made from the participant's data could not be made again.
 
-    remake: makes one export or report again from the journals that are left; its problem is told, not raised.
+    remake: makes one export or report again from the journals that are left, or removes it where none is; its
+    problem is told, not raised.
     """
     place = _place(plan)
     leaving = plan.person.with_name(f"{LEAVING}{plan.participant}")
@@ -73,14 +74,16 @@ def withdraw(plan: Withdrawal, remake: Callable[[Derived], None], say: Callable[
     say(f"Removed participant {plan.participant} from {plan.folder / 'sourcedata'} (files: {plan.files}).")
     if place is not None:
         say(f"Place {place} in the order of arrival is free again; the next new participant takes it.")
-    whole = True
+    whole, nobody = True, not any((plan.folder / "sourcedata").glob(f"sub-*/run-*/{JOURNAL}"))
+    done = "Removed, since nobody is left in it" if nobody else f"Made again without participant {plan.participant}"
     for made in plan.made:
         try:
             remake(made)
-            say(f"Made again without participant {plan.participant}: {made.sentence}.")
+            say(f"{done}: {made.sentence}.")
         except Exception as error:  # whatever it is, the others must still be made again
             whole = False
-            say(f"NOT made again: {made.sentence} ({error}). It may still hold {plan.participant}: delete it.")
+            why = str(error).rstrip(".")
+            say(f"NOT made again: {made.sentence} ({why}). It may still hold {plan.participant}: delete it.")
     say("Copies made by hand, backups and anything published are out of reach; ask whoever keeps them.")
     return whole
 

@@ -74,12 +74,18 @@ def test_a_withdrawal_that_was_killed_half_way_is_finished_by_the_same_command(d
     assert places_given_back(data) == [2]
 
 
-def test_when_the_last_one_withdraws_the_export_goes_too(tmp_path):
+def test_when_the_last_one_withdraws_the_export_and_the_report_go_too_but_no_file_of_the_experimenters(tmp_path, capfd):
     play(opened(tmp_path / "data", "P01"))
-    data = tmp_path / "data" / "walk_ratio"
-    run(["export", str(data), "--to", "bids", "--out", str(tmp_path / "bids")])
+    data, report, shared = tmp_path / "data" / "walk_ratio", tmp_path / "report", tmp_path / "shared"
+    assert run(["export", str(data), "--to", "bids", "--out", str(tmp_path / "bids")]) == 0
+    assert run(["analyse", str(data), "--out", str(report)]) == 0
+    assert run(["analyse", str(data), "--out", str(shared)]) == 0
+    (shared / "notes.txt").write_text("mine", encoding="utf-8")
     assert run(["withdraw", str(data), "--participant", "P01", "--yes"]) == 0
     assert not (tmp_path / "bids").exists()
+    assert not report.exists()
+    assert [path.name for path in shared.iterdir()] == ["notes.txt"]
+    assert capfd.readouterr().out.count("Removed, since nobody is left in it") == 3
 
 
 def test_what_cannot_be_made_again_is_named_and_the_command_fails(data, tmp_path, capfd):
