@@ -33,6 +33,7 @@ def test_the_readmes_path_from_copying_a_study_to_its_report_works(tmp_path, mon
         if words[0] == "run" or words[0] == "demo" or words[1].startswith("data/"):
             continue
         assert run(words) == 0, (command, capfd.readouterr())
+        assert "cannot be run" not in capfd.readouterr().out, command  # every planned test runs
         if words[0] == "copy":
             _apply(tmp_path / "my_study.yaml", change)
     assert (tmp_path / "report_simulated" / "report.html").exists()
@@ -70,6 +71,20 @@ def test_the_page_of_studies_names_all_with_their_participants_and_trials():
         (name, study.participants.planned, len(conditions(study)) * study.repetitions)
         for name, study in studies.items()
     ]
+
+
+def test_the_readme_names_all_studies_with_their_participants_trials_and_minutes(capsys):
+    from protocols.study_file import shipped_studies
+
+    rows = re.findall(r"^\| `(\w+)` \| (\d+) × (\d+) trials \| (\d+) \|", (ROOT / "README.md").read_text("utf-8"), re.M)
+    assert sorted(row[0] for row in rows) == sorted(shipped_studies())
+    for name, people, trials, minutes in rows:
+        assert run(["check", name]) == 0
+        said = capsys.readouterr().out
+        assert f"= {trials} trials" in said
+        assert f"{people} participants planned" in said
+        (checked,) = re.findall(r"about (\d+) minutes", said)
+        assert abs(int(minutes) - int(checked)) <= 2, name
 
 
 def test_the_yaml_of_the_study_file_page_is_accepted_in_a_study():
