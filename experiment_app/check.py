@@ -84,8 +84,8 @@ def _names(study: Study, setting: object, place: Place, what: str, known: Sequen
 def _coverage(study: Study) -> Iterator[Mistake]:
     """Walks that cannot be: speeds outside what the actor can walk at, over the task's whole range, or not made so."""
     from experiment_app.walkers import own_step_frequency
-    from stimuli.actors import load_actor
-    from stimuli.walker import drawn_pose
+    from stimuli.actors import tree_of
+    from stimuli.blend_tree import blend_weights
 
     impossible: dict[Walk, str] = {}
     checked: set[Walk] = set()
@@ -97,7 +97,8 @@ def _coverage(study: Study) -> Iterator[Mistake]:
                 try:
                     making = making_of(walk)
                     if making is None and walk.step_frequency is not None:
-                        drawn_pose(load_actor(walk.actor), walk.speed, walk.step_frequency, 0.0)
+                        wanted = {"speed": walk.speed, "step_frequency": walk.step_frequency}
+                        blend_weights(tree_of(walk.actor), wanted)
                     else:
                         own_step_frequency(walk.actor, walk.body, making, walk.speed)
                 except ValueError as error:

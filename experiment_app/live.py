@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -128,10 +129,10 @@ def run_live(
             status_line(triggered, watched_so_far(opened.run, opened.plan.total), sys.stderr) as told,
             listening(window, opened.run.folder) as heard,
             ending_signals(window.request_end),
+            preparing(opened.plan, say),
+            without_collection(),
         ):
-            prepare(opened.plan, say)
-            with without_collection():
-                session = run_session(begin(opened.plan), heard, recording_gaze(told, gaze))
+            session = run_session(begin(opened.plan), heard, recording_gaze(told, gaze))
     _certify(opened.run, say)
     command = f"gaitlab run {study} --participant {participant} --data {data}{' --pilot' if pilot else ''}"
     return _farewell(opened, command, session.ended, say)
@@ -188,18 +189,32 @@ def _group(opened: OpenRun) -> str:
     return f" ({', '.join(f'{name} {level}' for name, level in opened.group.items())})" if opened.group else ""
 
 
-def prepare(plan: Plan, say: Callable[[str], None]) -> None:
-    """Makes every walker the plan will show, so that nothing is loaded between trials."""
+@contextmanager
+def preparing(plan: Plan, say: Callable[[str], None]) -> Iterator[None]:
+    """Makes every walker the plan will show while the participant reads, so that nothing is loaded between trials.
+
+    Crowds take some seconds and are made before. What cannot be made is refused before a run opens (`check_names`).
+    """
     steps = [step for step in plan.steps if isinstance(step, TrialStep)]
     walks = {walk for step in steps for walk in walks_of(plan.study, step).values()}
-    if any(walk.crowd is not None for walk in walks):
+    crowds = [walk.crowd for walk in walks if walk.crowd is not None]
+    if crowds:
         say("Making the walks of the crowds, which takes some seconds.")
-    for walk in walks:
-        if walk.crowd is not None:
-            plan_of(crowd_of(walk.crowd))
-            continue
-        cast(walk.actor, walk.body)
-        own_step_frequency(walk.actor, walk.body, making_of(walk), walk.speed)
+    for crowd in crowds:
+        plan_of(crowd_of(crowd))
+
+    def make() -> None:
+        for walk in walks:
+            if walk.crowd is None:
+                cast(walk.actor, walk.body)
+                own_step_frequency(walk.actor, walk.body, making_of(walk), walk.speed)
+
+    thread = threading.Thread(target=make, name="walkers")
+    thread.start()
+    try:
+        yield
+    finally:
+        thread.join()
 
 
 @contextmanager

@@ -141,11 +141,11 @@ def refuse_mixed(data: Path, study: str, kind: str) -> None:
 
 def _provenance(study: Study) -> dict[str, str]:
     """Actor to where the walk comes from, and `style <name>` to where a style does, for all that the study shows."""
-    from stimuli.actors import load_actor
+    from stimuli.actors import provenance_of
     from stimuli.methods.styles import style_named
 
     walks = [walk for walk in shown_walks(study) if walk.crowd is None]
-    actors = {walk.actor: load_actor(walk.actor).provenance for walk in walks}
+    actors = {walk.actor: provenance_of(walk.actor) for walk in walks}
     styles = {walk.making.style for walk in walks if walk.making.style is not None}
     return dict(sorted(actors.items())) | {f"style {name}": style_named(name).provenance for name in sorted(styles)}
 

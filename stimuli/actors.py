@@ -32,6 +32,9 @@ METRONOME = (80.0, 90.0, 100.0, 110.0, 120.0)
 CYCLE_SPEEDS = (0.70, 0.88, 1.06, 1.24, 1.42)
 """m/s; with the metronome they give the five step lengths from very small to very long at each step frequency."""
 
+MODELLED = "modelled"
+"""Provenance of the default actors: the gait model."""
+
 POPULATION_WALK_RATIO = {"F": 0.00320, "M": 0.00327}
 """Walk ratio over height (min) at comfortable speed, means of the Schreiber & Moissenet women and men."""
 
@@ -142,6 +145,25 @@ def load_actor(name: str, body: Body | None = None) -> Actor:
     return _make(people()[name], body)
 
 
+def tree_of(name: str) -> Tree:
+    """The blend tree of an actor, which says what the actor covers; a default actor's cycles need not be made for it.
+
+    Raises ActorError for a name that is not known.
+    """
+    return metronome_tree(METRONOME, CYCLE_SPEEDS) if _is_default(name) else load_actor(name).tree
+
+
+def provenance_of(name: str) -> str:
+    """Where an actor's walk comes from, as `Actor.provenance`; raises ActorError for a name that is not known."""
+    return MODELLED if _is_default(name) else load_actor(name).provenance
+
+
+def _is_default(name: str) -> bool:
+    from stimuli.actor_library import imported_names
+
+    return name in people() and name not in imported_names()
+
+
 @cache
 def _default_actor(name: str) -> Actor:
     person = people()[name]
@@ -168,7 +190,7 @@ def _make(person: Person, body: Body) -> Actor:
         figure=figure,
         table=CycleTable.of(cycles),
         tree=metronome_tree(METRONOME, CYCLE_SPEEDS),
-        provenance="modelled",
+        provenance=MODELLED,
     )
 
 
