@@ -67,10 +67,21 @@ def _bracketed_root(
     return middle
 
 
+HUGE = 3000.0
+"""t over sqrt(df) from which the limiting form is within 1e-6 of the exact one; scipy's is off by 10 % at 1e5."""
+
+
 def t_noncentrality_limits(t: float, df: float, level: float = 0.95) -> tuple[float, float]:
-    """Noncentralities delta at which the observed t sits at the upper and lower tail."""
+    """Noncentralities delta at which the observed t sits at the upper and lower tail.
+
+    Beyond HUGE sqrt(df), where scipy's noncentral t no longer holds, the normal deviate Z of
+    T = (Z + delta) / sqrt(V / df) counts for nothing beside delta: delta = t sqrt(V / df) with V a chi-square.
+    """
     if not np.isfinite(t):
         return float("nan"), float("nan")
+    if abs(t) > HUGE * np.sqrt(df):
+        low, high = (t * np.sqrt(stats.chi2.ppf(p, df) / df) for p in ((1 - level) / 2, (1 + level) / 2))
+        return (float(low), float(high)) if t > 0 else (float(high), float(low))
 
     def limit(probability: float) -> float:
         def excess(delta: float) -> float:

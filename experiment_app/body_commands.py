@@ -60,11 +60,11 @@ def import_file(
 @body_commands.command(name="list")
 def list_bodies() -> int:
     """List every name that a study's `body` can have."""
-    from stimuli.bodies import haircut_names, load_body, shipped_names
-    from stimuli.body_library import MATCHED, MISMATCHED, imported_names
+    from stimuli.bodies import haircut_names, load_body, shipped_names, variant_names
+    from stimuli.body_library import MATCHED, MISMATCHED, OWN_BUILD, imported_names
     from stimuli.point_light import FIGURES
 
-    ours = (*shipped_names(), *haircut_names())
+    ours = (*shipped_names(), *haircut_names(), *variant_names())
     for name in (*ours, *imported_names()):
         body = load_body(name)
         counts = " / ".join(str(sum(len(s.triangles) for s in level)) for level in body.levels)
@@ -72,6 +72,7 @@ def list_bodies() -> int:
         out.print(f"{name:24}{body.stature:.2f} m  {counts} triangles  {kind}", markup=False)
     for name, whose in ((MATCHED, "the actor's sex"), (MISMATCHED, "the other sex")):
         out.print(f"{name:24}the body that comes with gaitlab of {whose}", markup=False)
+    out.print(f"{OWN_BUILD:24}the matched body, as stout or slim as the actor's weight and height say", markup=False)
     for name in FIGURES:
         out.print(f"{name:24}drawn without a body, on the actor's own joints", markup=False)
     return 0

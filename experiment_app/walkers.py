@@ -13,8 +13,9 @@ from experiment_app.crowds import drawn_crowd, measured_crowd
 from experiment_app.render.drawn import Drawn, DrawnCrowd, DrawnWalker
 from experiment_app.scene import Scene, Walker
 from stimuli.actors import Actor, load_actor
-from stimuli.bodies import body_for, haircut_names, load_body, scaled, shipped_names
+from stimuli.bodies import body_for, comes_with_gaitlab, in_the_build_of, load_body, scaled
 from stimuli.body import Body
+from stimuli.body_library import OWN_BUILD
 from stimuli.body_retarget import on_its_own_soles
 from stimuli.measure import delivered_gait
 from stimuli.methods.actor_walks import natural_step_frequency
@@ -30,7 +31,8 @@ from stimuli.walker import drawn_pose, skin_matrices
 def cast(actor: str, body: str) -> tuple[Actor, Body]:
     """The actor, and the body at the actor's height that wears the motion; body "" is the actor's own.
 
-    matched and mismatched are the shipped bodies of the actor's sex and of the other. A figure without a body
+    matched and mismatched are the shipped bodies of the actor's sex and of the other, own_build is the matched one in
+    the actor's build. A figure without a body
     (point_light, stick_figure, ...) moves on the joints of the actor's own body. Raises ActorError or BodyError for a
     name that is not known.
     """
@@ -41,8 +43,9 @@ def cast(actor: str, body: str) -> tuple[Actor, Body]:
     worn = load_body(name)
     chosen = load_actor(actor, worn)
     grown = scaled(worn, chosen.height)
-    shipped = name in (*shipped_names(), *haircut_names())
-    return (chosen if shipped else on_its_own_soles(chosen, grown)), grown
+    if body == OWN_BUILD:
+        return chosen, in_the_build_of(grown, chosen.sex, chosen.weight, chosen.height)
+    return (chosen if comes_with_gaitlab(name) else on_its_own_soles(chosen, grown)), grown
 
 
 @cache

@@ -14,7 +14,8 @@ from stimuli.body import Body, Surface
 from stimuli.body_files.baked import haircuts, read_baked
 from stimuli.body_files.errors import BodyError
 from stimuli.body_files.imported import import_body
-from stimuli.body_library import MATCHED, MISMATCHED, imported_names, path_of
+from stimuli.body_library import MATCHED, MISMATCHED, OWN_BUILD, imported_names, path_of
+from stimuli.builds import GIRTHS, girths_of
 from stimuli.point_light import FIGURES
 from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
 from stimuli.skinning import skin
@@ -23,11 +24,14 @@ __all__ = [
     "BodyError",
     "body_for",
     "body_names",
+    "comes_with_gaitlab",
     "hair_names",
     "haircut_names",
+    "in_the_build_of",
     "load_body",
     "scaled",
     "shipped_names",
+    "variant_names",
     "with_girths",
 ]
 
@@ -47,16 +51,31 @@ def haircut_names() -> dict[str, tuple[str, str]]:
     return {f"{name}_{cut}": (name, cut) for name in _NAMES for cut in hair_names(name)[1:]}
 
 
+def variant_names() -> dict[str, tuple[str, str]]:
+    """Name of a shipped body of another build, as woman_ponytail_stout -> the body's name without it and the build."""
+    builds = [build for build, girths in GIRTHS.items() if girths]
+    return {f"{name}_{build}": (name, build) for name in (*_NAMES, *haircut_names()) for build in builds}
+
+
 def body_names() -> tuple[str, ...]:
     """What a study can name as body: shipped and imported ones, those by the actor's sex, figures without a body."""
-    return (*_NAMES, *haircut_names(), *imported_names(), MATCHED, MISMATCHED, *FIGURES)
+    return (*_shipped_with_variants(), *imported_names(), MATCHED, MISMATCHED, OWN_BUILD, *FIGURES)
+
+
+def comes_with_gaitlab(name: str) -> bool:
+    """Whether a body is a shipped one, in any haircut and build."""
+    return name in _shipped_with_variants()
+
+
+def _shipped_with_variants() -> tuple[str, ...]:
+    return (*_NAMES, *haircut_names(), *variant_names())
 
 
 def body_for(sex: str, name: str) -> str:
-    """The body that a name stands for on an actor of a sex ("F" or "M"): `matched` and `mismatched` depend on it."""
-    if name not in (MATCHED, MISMATCHED):
+    """The body that a name stands for on an actor of a sex ("F" or "M"): those that depend on the actor, or itself."""
+    if name not in (MATCHED, MISMATCHED, OWN_BUILD):
         return name
-    return "woman" if (sex == "F") == (name == MATCHED) else "man"
+    return "woman" if (sex == "F") == (name != MISMATCHED) else "man"
 
 
 def load_body(name: str, hair: str | None = None) -> Body:
@@ -64,7 +83,23 @@ def load_body(name: str, hair: str | None = None) -> Body:
     if name not in _NAMES and name in imported_names():
         path = path_of(name)
         return _imported(name, path, path.stat().st_mtime_ns)
+    if name in variant_names():
+        return _of_build(*variant_names()[name])
     return _shipped(*haircut_names().get(name, (name, hair)))
+
+
+@cache
+def _of_build(name: str, build: str) -> Body:
+    return with_girths(load_body(name), GIRTHS[build])
+
+
+def in_the_build_of(body: Body, sex: str, weight: float, height: float) -> Body:
+    """A shipped body as stout or slim as a person of that sex ("F" or "M"), weight (kg) and height (m) is.
+
+    Stouter or slimmer than bodies can be made, it is as stout or slim as they can.
+    """
+    girths = {j: min(max(g, SLIMMEST), STOUTEST) for j, g in girths_of(sex, weight, height).items()}
+    return with_girths(body, girths)
 
 
 @cache
@@ -140,6 +175,6 @@ def _file(name: str) -> bytes:
     if name not in _NAMES:
         if name in FIGURES:
             raise BodyError(f"{name} is drawn without a body")
-        known = (*_NAMES, *haircut_names(), *imported_names())
+        known = (*_shipped_with_variants(), *imported_names())
         raise BodyError(f"there is no body {name!r}; known bodies are {', '.join(known)}")
     return files("stimuli").joinpath("data", "bodies", f"{name}.glb").read_bytes()

@@ -15,7 +15,10 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
 MATCHED, MISMATCHED = "matched", "mismatched"
 """Stand in a study for the shipped body of the actor's sex, and for that of the other sex, at the actor's height."""
 
-TAKEN = ("woman", "man", MATCHED, MISMATCHED, *FIGURES)
+OWN_BUILD = "own_build"
+"""Stands in a study for the shipped body of the actor's sex, as stout or slim as the actor's weight and height say."""
+
+TAKEN = ("woman", "man", MATCHED, MISMATCHED, OWN_BUILD, *FIGURES)
 
 
 def library_folder() -> Path:

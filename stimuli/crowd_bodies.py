@@ -15,16 +15,7 @@ from numpy.typing import NDArray
 
 from stimuli.bodies import load_body, with_girths
 from stimuli.body import Body, Surface
-
-LIMBS = tuple(
-    f"{side}{part}" for side in ("left", "right") for part in ("UpperLeg", "LowerLeg", "UpperArm", "LowerArm")
-)
-
-GIRTHS: dict[str, dict[str, float]] = {
-    "slim": dict.fromkeys(("hips", "spine", "chest", *LIMBS), 0.93),
-    "medium": {},
-    "stout": {"hips": 1.12, "spine": 1.2, "chest": 1.12, "neck": 1.06} | dict.fromkeys(LIMBS, 1.1),
-}
+from stimuli.builds import GIRTHS
 
 LEVELS = 3  # coarse ones, after the body's own
 KEPT = {

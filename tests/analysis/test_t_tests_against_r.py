@@ -9,6 +9,7 @@ import pytest
 
 from analysis import normality, t_tests, t_tests_from_summary
 from analysis.bayes_factor import jzs
+from analysis.effect_size import HUGE, t_noncentrality_limits
 from tests.analysis.reference import arguments, expected, path, table
 
 CONDITIONS = ["cond1", "cond2", "cond3", "cond4"]
@@ -86,6 +87,17 @@ def test_niays_table_3_4_from_means_and_standard_deviations() -> None:
 def test_a_bayes_factor_of_rouder_2009() -> None:
     # Rouder et al. 2009, p. 232: t = 2.03, n = 80, r = 1 favours the null 1.56 to 1.
     assert 1 / jzs(2.03, 79, 80, scale=1.0) == pytest.approx(1.56, abs=0.01)
+
+
+@pytest.mark.parametrize("df", [2, 5, 21, 100])
+def test_effect_sizes_have_limits_however_large_t_is(df: int) -> None:
+    """Values that hardly differ between people, as thresholds that all went to one end, give t of a billion."""
+    edge = HUGE * df**0.5
+    exact, limiting = t_noncentrality_limits(edge * 0.999, df), t_noncentrality_limits(edge * 1.001, df)
+    assert [low / 0.999 for low in exact] == pytest.approx([low / 1.001 for low in limiting], rel=3e-6)
+    low, high = t_noncentrality_limits(4.7e9, df)
+    assert 0 < low < 4.7e9 < high
+    assert t_noncentrality_limits(-4.7e9, df) == pytest.approx((-high, -low))
 
 
 @pytest.mark.parametrize("name", ["01_mixed_4x3x2_sex", "06_unbalanced_3x2_between_3x2", "05_within_4x3"])

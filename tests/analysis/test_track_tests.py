@@ -58,6 +58,14 @@ def test_two_tracks_of_a_participant_are_averaged_before_people_are():
     assert test.table["n"].tolist() == [2, 2]
 
 
+def test_people_who_all_go_to_one_end_have_a_threshold_there():
+    """Also when they differ by rounding only, as QUEST+ does that believes in its last threshold."""
+    asked = plan(QUEST)
+    data = [trials([5] * 40, [0] * (38 + i) + [1] * (2 - i), f"P{i}", 1) for i in range(3)]
+    test = track_tests(pd.concat(data), asked, asked.adaptive)
+    assert test.table["mean"].item() == pytest.approx(5.0, abs=0.05)
+
+
 def test_a_track_that_never_turned_has_no_threshold_and_no_track_with_one_is_a_sentence():
     asked = plan(STAIRCASE)
     turned = trials([5, 4, 3, 4, 3, 4, 5, 4], [1, 1, 0, 1, 0, 0, 1, 0])

@@ -14,12 +14,15 @@ from stimuli.bodies import (
     body_names,
     hair_names,
     haircut_names,
+    in_the_build_of,
     load_body,
     scaled,
     shipped_names,
+    variant_names,
     with_girths,
 )
 from stimuli.body_files.baked import read_baked
+from stimuli.builds import AVERAGE
 from stimuli.measure import poses
 from stimuli.skeleton import JOINTS, PARENTS
 from stimuli.skinning import skin
@@ -282,3 +285,44 @@ def test_girths_that_make_no_person_are_refused(girths):
 @pytest.mark.parametrize(("sex", "matched", "mismatched"), [("F", "woman", "man"), ("M", "man", "woman")])
 def test_matched_and_mismatched_bodies_follow_the_actors_sex(sex: str, matched: str, mismatched: str) -> None:
     assert (body_for(sex, "matched"), body_for(sex, "mismatched"), body_for(sex, "man")) == (matched, mismatched, "man")
+
+
+def test_a_build_is_part_of_a_bodys_name_too():
+    for name in ("man_slim", "man_stout", "woman_ponytail_stout"):
+        assert name in variant_names()
+        assert name in body_names()
+    slim, usual, stout = (
+        np.ptp(surface(load_body(n), "shirt").positions[:, 2]) for n in ("man_slim", "man", "man_stout")
+    )
+    assert slim < usual < stout
+    assert len(surface(load_body("woman_ponytail_stout"), "hair").positions) == len(
+        surface(load_body("woman_ponytail"), "hair").positions
+    )
+
+
+@pytest.mark.parametrize("sex", ["F", "M"])
+def test_somebody_of_average_weight_and_height_has_the_shipped_build(sex):
+    weight, height = AVERAGE[sex]
+    body = load_body(body_for(sex, "own_build"))
+    assert body.name == body_for(sex, "matched")
+    same = in_the_build_of(body, sex, weight, height)
+    assert np.allclose(surface(same, "shirt").positions, surface(body, "shirt").positions, atol=1e-12)
+
+
+@pytest.mark.parametrize(("share", "widest"), [(0.81, 0.9), (1.21, 1.1)])
+def test_a_body_of_one_height_gets_wider_with_the_root_of_its_weight(share, widest):
+    weight, height = AVERAGE["M"]
+    body = load_body("man")
+    there = in_the_build_of(body, "M", share * weight, height)
+    hip = body.skeleton.positions[JOINTS.index("leftUpperLeg")]
+    knee = body.skeleton.positions[JOINTS.index("leftLowerLeg")]
+    thigh = np.abs(surface(body, "trousers").positions - 0.5 * (hip + knee)) < (0.2, 0.02, 0.2)
+    near = thigh.all(axis=1)
+    before, after = (np.ptp(surface(b, "trousers").positions[near][:, 2]) for b in (body, there))
+    assert after / before == pytest.approx(widest, abs=0.02)
+    volumes = [volume(s.positions, s.triangles) for b in (body, there) for s in b.levels[0] if s.name == "trousers"]
+    assert volumes[1] / volumes[0] == pytest.approx(share, abs=0.04)
+
+
+def test_bodies_are_never_thinner_than_they_can_be_made():
+    in_the_build_of(load_body("woman"), "F", 5.0, 1.7)

@@ -9,7 +9,8 @@ from stimuli.actors import load_actor
 from stimuli.blend_tree import Leaf
 from stimuli.bodies import load_body
 from stimuli.body_generator.crowd_levels import SMALL, coarse_levels
-from stimuli.crowd_bodies import GIRTHS, KEPT, crowd_body
+from stimuli.builds import GIRTHS
+from stimuli.crowd_bodies import KEPT, crowd_body
 from stimuli.crowd_looks import LOOKS, difference, farthest, linear_rgb, looks
 from stimuli.crowd_motions import Style, drawn_manner, figure_of, least_distinctive, motion_of
 from stimuli.gait_model import load_gait_model

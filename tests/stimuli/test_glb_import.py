@@ -15,7 +15,7 @@ from stimuli.bodies import load_body
 from stimuli.body_files.animation import Channel, moved_nodes, read_animations, value_at
 from stimuli.body_files.container import Container, open_container, read_container, write_container
 from stimuli.body_files.errors import BodyError
-from stimuli.body_files.imported import bounding_box, import_body
+from stimuli.body_files.imported import bounding_box, import_and_explain, import_body
 from stimuli.body_files.scene import placed_vertices, read_scene
 from stimuli.skeleton import JOINTS
 
@@ -51,6 +51,65 @@ def test_joints_without_names_are_told_by_the_skeletons_shape(tmp_path):
     imported = import_body(saved(tmp_path, changed(nameless)))
     legs = [j for j, name in enumerate(JOINTS) if "Leg" in name or "Foot" in name or "Arm" in name or "Hand" in name]
     assert np.allclose(imported.skeleton.positions[legs], load_body("man").skeleton.positions[legs], atol=0.003)
+
+
+MIXAMO = {
+    "hips": "Hips", "spine": "Spine", "chest": "Spine2", "neck": "Neck", "head": "Head", "Shoulder": "{}Shoulder",
+    "UpperArm": "{}Arm", "LowerArm": "{}ForeArm", "Hand": "{}Hand", "UpperLeg": "{}UpLeg", "LowerLeg": "{}Leg",
+    "Foot": "{}Foot", "Toes": "{}ToeBase",
+}  # fmt: skip
+BIPED = {
+    "hips": "Pelvis", "spine": "Spine", "chest": "Spine2", "neck": "Neck", "head": "Head", "Shoulder": "{} Clavicle",
+    "UpperArm": "{} UpperArm", "LowerArm": "{} Forearm", "Hand": "{} Hand", "UpperLeg": "{} Thigh",
+    "LowerLeg": "{} Calf", "Foot": "{} Foot", "Toes": "{} Toe0",
+}  # fmt: skip
+
+
+def named(prefix: str, words: dict[str, str], left: str, right: str):
+    """A change of every joint's name to that of another program."""
+
+    def change(document):
+        for node in document["nodes"]:
+            role = node.get("name", "")
+            part = role.removeprefix("left").removeprefix("right")
+            if part in words:
+                node["name"] = prefix + words[part].format(left if role.startswith("left") else right)
+
+    return change
+
+
+def vrm(version: int):
+    """A change to a VRM file: joints with names that say nothing, told by the list of the extension."""
+
+    def change(document):
+        bones = [(node["name"], i) for i, node in enumerate(document["nodes"]) if node.get("name") in JOINTS]
+        for node in document["nodes"]:
+            node["name"] = "x"
+        extension = (
+            {"VRM": {"humanoid": {"humanBones": [{"bone": role, "node": i} for role, i in bones]}}}
+            if version == 0
+            else {"VRMC_vrm": {"humanoid": {"humanBones": {role: {"node": i} for role, i in bones}}}}
+        )
+        document.setdefault("extensions", {}).update(extension)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "told_by"),
+    [
+        (vrm(0), "VRM"),
+        (vrm(1), "VRM"),
+        (named("mixamorig:", MIXAMO, "Left", "Right"), "Mixamo"),
+        (named("", MIXAMO, "Left", "Right"), "Mixamo|Vicon/MotionBuilder"),  # Ready Player Me
+        (named("Bip01 ", BIPED, "L", "R"), "3ds Max Biped"),  # Rocketbox
+    ],
+)
+def test_joints_are_told_by_the_words_of_the_program_they_come_from(tmp_path, change, told_by):
+    body, explained = import_and_explain(saved(tmp_path, changed(change)))
+    assert explained.source in told_by.split("|")
+    assert all(explained.joints[role] is not None for role in JOINTS)
+    assert np.allclose(body.skeleton.positions, load_body("man").skeleton.positions, atol=0.002)
 
 
 @pytest.mark.parametrize("factor", [1.0, 100.0, 0.01, 1000.0])
