@@ -18,7 +18,7 @@ from experiment_app.scene import Camera, Crowd, Marks, Scene, View, Walker
 from experiment_app.walkers import drawn_walkers, walk_of
 from experiment_app.windows.offscreen import offscreen_context
 from protocols.study_file import read_study, shipped_studies
-from stimuli.bodies import haircut_names, shipped_names
+from stimuli.bodies import shipped_names
 from stimuli.body_library import imported_names
 from stimuli.methods.recipe import Making
 from stimuli.methods.styles import default_styles
@@ -35,6 +35,11 @@ CLOSE = Camera("three_quarter", 5.0, 1.3, 24.0)
 PHASES = (0.02, 0.18, 0.34, 0.5)
 
 PART_COLOURS = {"legs": (214, 95, 60), "arms": (70, 130, 190), "torso": (110, 165, 90), "head": (225, 185, 70)}
+BUILDS = (
+    ("F1", "woman_slim"), ("F1", "woman"), ("F1", "woman_ponytail_stout"),
+    ("M1", "man_slim"), ("M1", "man"), ("M1", "man_cropped_stout"),
+)  # fmt: skip
+"""Actors and bodies in which every build and both haircuts can be seen."""
 
 
 def make_gallery(folder: Path) -> Iterator[Path]:
@@ -66,8 +71,8 @@ def make_gallery(folder: Path) -> Iterator[Path]:
     yield row("treadmill.png", list(_treadmill()), HALF)
     yield row("pair.png", [_pair()], WIDE)
     yield row("street.png", list(_street()), HALF)
-    bodies = (*shipped_names(), *haircut_names(), *imported_names())
-    yield row("bodies.png", [_one("M1", 0.2, body=name) for name in bodies[:6]])
+    yield row("builds.png", [_one(actor, 0.2, body=body) for actor, body in BUILDS])
+    yield row("bodies.png", [_one("M1", 0.2, body=name) for name in (*shipped_names(), *imported_names()[:4])])
     yield row("levels.png", [_one("F1", 0.2, lod=level) for level in (0, 1, 2)])
     styles = drawn([_styled(style) for style in (None, *default_styles())], SMALL)
     save_picture(np.vstack([np.hstack(styles[:6]), np.hstack(styles[6:])]), folder / "styles.png")
