@@ -22,6 +22,7 @@ from experiment_app.crowds import plan_of
 from experiment_app.errors import RunError, UsageError
 from experiment_app.gaze.recording import gaze_watched, recording_gaze
 from experiment_app.loop import run_session
+from experiment_app.lsl import import_pylsl
 from experiment_app.markers import announcing
 from experiment_app.opening import (
     OpenRun,
@@ -35,7 +36,7 @@ from experiment_app.opening import (
 from experiment_app.run_folder import Run, check_participant, first_headers
 from experiment_app.staging import crowd_of, making_of
 from experiment_app.timing_page import write_certificate
-from experiment_app.triggers import triggering
+from experiment_app.triggers import trigger_line, triggering
 from experiment_app.walkers import cast, own_step_frequency
 from experiment_app.windows.desktop import DesktopWindow, Device
 from experiment_app.windows.key_times import Keyboard
@@ -103,7 +104,13 @@ def run_live(
     if old is not None and not _continues(old, file, resume, ask, say):
         return 2
     study_played = file.study if old is None else recorded_plan(old).study
-    with open_window(file.study.title, screen) as window, gaze_watched(study_played.gaze, window) as gaze:
+    if lsl:
+        import_pylsl()  # what is missing is said before a run is begun
+    with (
+        trigger_line(trigger) as line,
+        open_window(file.study.title, screen) as window,
+        gaze_watched(study_played.gaze, window) as gaze,
+    ):
         if old is not None:
             opened = open_unfinished(old, display=window.description())
             if opened.torn:
@@ -125,8 +132,11 @@ def run_live(
             sitting,
             opened.journal as journal,
             announcing(journal, lsl, opened.run, file.hash, window.now) as announced,
-            triggering(announced, trigger, window.now) as triggered,
-            status_line(triggered, watched_so_far(opened.run, opened.plan.total), sys.stderr) as told,
+            status_line(
+                triggering(announced, line, trigger, window.now),
+                watched_so_far(opened.run, opened.plan.total),
+                sys.stderr,
+            ) as told,
             listening(window, opened.run.folder) as heard,
             ending_signals(window.request_end),
             preparing(opened.plan, say),

@@ -153,13 +153,16 @@ class Triggering:
 
 
 @contextmanager
-def triggering(journal: Recorder, text: str, now: Callable[[], float]) -> Iterator[Recorder]:
-    """The recorder itself when `text` is empty, else one that also triggers on that line."""
-    if not text:
-        yield journal
-        return
-    line = open_line(text)
+def trigger_line(text: str) -> Iterator[Line | None]:
+    """The line that `text` names, open; None when `text` is empty. Raises UsageError, so open it before a run is."""
+    line = open_line(text) if text else None
     try:
-        yield Triggering(journal, line, text, now)
+        yield line
     finally:
-        line.close()
+        if line is not None:
+            line.close()
+
+
+def triggering(journal: Recorder, line: Line | None, name: str, now: Callable[[], float]) -> Recorder:
+    """The recorder itself when there is no line, else one that also triggers on it."""
+    return journal if line is None else Triggering(journal, line, name, now)

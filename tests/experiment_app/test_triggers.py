@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 import pty
+import re
 import sys
 import types
 
 import pytest
 
 from experiment_app import triggers
+from experiment_app.command import run
 from experiment_app.errors import RunError, UsageError
-from experiment_app.triggers import Triggering, open_line, triggering
+from experiment_app.triggers import Triggering, open_line, trigger_line, triggering
 from protocols.record import Ended, Paused, Resumed, TrialBegun, TriggerSent
 
 
@@ -88,16 +90,24 @@ def test_a_serial_line_carries_one_byte_per_code(monkeypatch):
     module = types.ModuleType("serial")
     module.Serial = Port  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "serial", module)
-    with triggering(Kept(), "serial:/dev/box", now=lambda: 0.0) as recorder:
-        recorder.write(RECORDS[1:3])
+    with trigger_line("serial:/dev/box") as line:
+        triggering(Kept(), line, "serial:/dev/box", now=lambda: 0.0).write(RECORDS[1:3])
         assert os.read(reader, 1) + os.read(reader, 1) == bytes([3, 4])
     os.close(reader)
 
 
 def test_without_a_line_the_recorder_is_the_journal_itself():
     kept = Kept()
-    with triggering(kept, "", now=lambda: 0.0) as recorder:
-        assert recorder is kept
+    with trigger_line("") as line:
+        assert triggering(kept, line, "", now=lambda: 0.0) is kept
+
+
+@pytest.mark.parametrize("wrong", [["--trigger", "usb:1"], ["--lsl"]])
+def test_what_is_missing_for_other_recorders_is_said_before_a_run_is_begun(wrong, tmp_path, monkeypatch, capfd):
+    monkeypatch.setitem(sys.modules, "pylsl", None)
+    assert run(["run", "walk_ratio", "--participant", "P01", "--data", str(tmp_path / "data"), *wrong]) == 2
+    assert re.search("--trigger usb:1|gaitlab\\[lsl\\]", capfd.readouterr().err)
+    assert not list(tmp_path.rglob("journal.jsonl"))
 
 
 def test_a_parallel_line_sets_the_pins_and_clears_them(monkeypatch, tmp_path):
