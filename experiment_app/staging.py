@@ -20,7 +20,7 @@ from protocols.task import Scale, Seen, View
 from protocols.viewing import field_of_view
 from stimuli.methods.recipe import Making
 
-QUESTION_STRIP, SCALE_STRIP = 0.1, 0.2
+QUESTION_STRIP, SCALE_STRIP = 0.1, 0.22
 """Share of the picture's height, at its lower edge, that a question has for itself."""
 
 OWN_WAY = OwnMaking()
@@ -121,11 +121,12 @@ def making_of(walk: Walk) -> Making | None:
 
 
 def _question_page(study: Study, view: View) -> Page:
-    """The question, with the scale that answers it unless keys do."""
+    """The question, with the scale that answers it unless keys do, and a sentence when the answer is missing."""
     if view.scale is None:
         return Page((Line(view.question),), strip=QUESTION_STRIP)
     button = Box(CONFIRM, study.words.next, "button")
-    return Page((), (Row(view.question, (button,), slider=_slider(view.scale)),), strip=SCALE_STRIP)
+    missing = study.words.missing if view.unanswered else ""
+    return Page((), (Row(view.question, (button,), missing, _slider(view.scale)),), strip=SCALE_STRIP)
 
 
 def _slider(scale: Scale) -> Slider:

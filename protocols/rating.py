@@ -47,6 +47,7 @@ class RatingTrial:
     time:   s on the run's clock up to which the trial has come; began: s, flip of the first frame, None before it.
     looked: s since onset, pauses excluded; early: confirmations that came too early, or before there was a mark.
     mark:   the rating so far, None before; held: the keys among lower and raise that are down.
+    wanted_on: whether the participant wanted to confirm before there was a mark.
     """
 
     task: RatingTask
@@ -60,6 +61,7 @@ class RatingTrial:
     holding: frozenset[Direction] = frozenset()
     key_presses: int = 0
     early: int = 0
+    wanted_on: bool = False
     done: bool = False
 
     @property
@@ -74,8 +76,9 @@ class RatingTrial:
 
     @property
     def view(self) -> View:
-        """The walks that are seen now, the question and the scale."""
-        return View(self.viewing.seen, self.question, replace(self.task.scale, mark=self.mark))
+        """The walks that are seen now, the question and the scale; what is missing once it was missed."""
+        scale = replace(self.task.scale, mark=self.mark)
+        return View(self.viewing.seen, self.question, scale, unanswered=self.wanted_on and self.mark is None)
 
     @property
     def response(self) -> Mapping[str, Level]:
@@ -153,7 +156,7 @@ class RatingTrial:
 
     def _confirmed(self) -> RatingTrial:
         if self.mark is None or self.looked < self.task.minimum_looking_time or not self.viewing.every_one_seen:
-            return replace(self, early=self.early + 1)
+            return replace(self, early=self.early + 1, wanted_on=self.wanted_on or self.mark is None)
         return replace(self, done=True, holding=frozenset())
 
     def _moved(self, direction: Direction, sign: int) -> RatingTrial:

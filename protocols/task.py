@@ -52,11 +52,13 @@ class View:
 
     walks:    from left to right; none while there is nothing to see.
     question: asked under the walks, "" for none; scale: where it is answered, None where keys do.
+    unanswered: the participant wanted to go on and has not answered yet, which the screen says.
     """
 
     walks: tuple[Seen, ...] = ()
     question: str = ""
     scale: Scale | None = None
+    unanswered: bool = False
 
 
 @dataclass(frozen=True)

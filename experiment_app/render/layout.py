@@ -228,6 +228,8 @@ def _row(row: Row, setting: Setting) -> Block:
     parts.append((setting.space(0.5), boxes))
     if row.error.strip():
         parts.append((setting.space(0.45), _error(clean(row.error), setting)))
+    elif row.slider is not None:  # so that a scale stays where it is when the sentence comes
+        parts.append((setting.space(0.45), Block(setting.leading("error"))))
     return _stack(parts)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 
 import pytest
@@ -45,6 +46,17 @@ def test_the_mark_of_a_line_stands_where_its_value_is_clicked():
     (scale,) = layout_page(page(LINE), 1920, 1080, 1.0).sliders
     assert scale.knob is not None
     assert scale.value_at(scale.knob.x + scale.knob.width / 2) == pytest.approx(2.5, abs=0.02)
+
+
+@given(WINDOWS)
+def test_a_scale_stays_where_it_is_when_the_missing_answer_is_named(window):
+    before = page(FIVE)
+    after = replace(before, rows=(replace(before.rows[0], error="Please answer this question."),))
+    without, with_sentence = (layout_page(found, *window, 1.0) for found in (before, after))
+    assert (without.sliders, without.boxes) == (with_sentence.sliders, with_sentence.boxes)
+    (sentence,) = [text for text in with_sentence.texts if text.role == "error"]
+    assert sentence.rectangle.bottom <= window[1]
+    assert with_sentence.complete
 
 
 @given(WINDOWS)

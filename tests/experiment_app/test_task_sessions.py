@@ -50,6 +50,21 @@ def test_a_click_on_the_scale_is_recorded_and_counts():
     assert record.response == {"rating": 3.0, "views": 1}
 
 
+def test_the_strip_says_in_the_studys_words_that_the_mark_is_missing_until_it_is_set():
+    study = edited("fourier_naturalness", ("interval: 0.5", "interval: 0.5\nwords: {missing: Bitte antworten.}")).study
+
+    def sentence(session: Session) -> str:
+        page = stage(session).page
+        assert page is not None
+        return page.rows[0].error
+
+    session = at_a_trial(study)
+    assert sentence(session) == ""
+    session = handle(session, Clicked(102.0, "confirm"))
+    assert sentence(session) == "Bitte antworten."
+    assert sentence(handle(session, Clicked(103.0, "scale:3"))) == ""
+
+
 def test_a_break_and_a_pause_in_a_choice_take_none_of_its_time():
     session = at_a_trial(few_choices().study)
     for time, key in ((101.0, "b"), (160.0, "enter"), (161.0, "escape"), (200.0, "enter"), (202.0, "right")):

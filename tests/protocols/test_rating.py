@@ -53,6 +53,18 @@ def test_nothing_is_confirmed_without_a_mark_or_too_early():
     assert played(trial, KeyDown(2.0, "enter")).done
 
 
+def test_a_confirmation_without_a_mark_is_answered_until_there_is_one():
+    assert not started().view.unanswered
+    refused = played(started(), KeyDown(0.5, "enter"))
+    assert refused.view.unanswered
+    assert played(refused, Clicked(0.7, "confirm")).advance(9.0).view.unanswered
+    assert not played(refused, KeyDown(1.0, "1")).view.unanswered
+
+
+def test_a_confirmation_that_comes_too_early_with_a_mark_misses_no_answer():
+    assert not played(started(minimum=2.0), KeyDown(0.5, "1"), KeyDown(1.0, "enter")).view.unanswered
+
+
 def test_digits_beyond_the_scale_and_other_keys_change_nothing():
     assert played(started(), KeyDown(1.0, "7"), KeyDown(2.0, "x")).mark is None
 
