@@ -11,7 +11,7 @@ from rich.console import Console
 
 from experiment_app.errors import UsageError
 
-out = Console(highlight=False, soft_wrap=True)
+out = Console(highlight=False, emoji=False, soft_wrap=True)
 body_commands = App(name="body", help="Bodies: check a character from another program, import it, list them all.")
 
 File = Annotated[Path, Parameter(help="A skinned humanoid in glTF 2.0: .glb, .gltf or .vrm.")]

@@ -27,8 +27,8 @@ app = App(
     version_flags=["--version"],
     help_format="plaintext",  # markdown would cost a fifth of a second at every --help
 )
-out = Console(highlight=False, soft_wrap=True)
-problems = Console(stderr=True, highlight=False, soft_wrap=True)
+out = Console(highlight=False, emoji=False, soft_wrap=True)
+problems = Console(stderr=True, highlight=False, emoji=False, soft_wrap=True)
 app.command(clip)
 app.command(actor_commands)
 app.command(body_commands)

@@ -12,8 +12,8 @@ from rich.console import Console
 from experiment_app.derived import Derived, note_derived
 from experiment_app.errors import UsageError
 
-out = Console(highlight=False, soft_wrap=True)
-problems = Console(stderr=True, highlight=False, soft_wrap=True)
+out = Console(highlight=False, emoji=False, soft_wrap=True)
+problems = Console(stderr=True, highlight=False, emoji=False, soft_wrap=True)
 
 StudyFolder = Annotated[Path, Parameter(help="The study's folder of data, as data/walk_ratio.")]
 

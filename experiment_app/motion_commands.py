@@ -11,7 +11,7 @@ from rich.console import Console
 
 from experiment_app.errors import UsageError
 
-out = Console(highlight=False, soft_wrap=True)
+out = Console(highlight=False, emoji=False, soft_wrap=True)
 actor_commands = App(name="actor", help="Actors: list, import from captures, check, look at, and take poses of.")
 
 Name = Annotated[str, Parameter(help="Name of the actor, as F1.")]

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from experiment_app.errors import UsageError
 
-out = Console(highlight=False, soft_wrap=True)
+out = Console(highlight=False, emoji=False, soft_wrap=True)
 style_commands = App(name="style", help="Styles of walking: list them, import captured ones.")
 
 

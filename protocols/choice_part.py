@@ -51,6 +51,16 @@ class Choice(PairPart):
         return self.sides == "balanced"
 
     @property
+    def recorded(self) -> dict[str, tuple[str, ...] | None]:
+        """Columns that a choice fills as it is shown here, to the words they can hold, or None for numbers."""
+        names, apart = tuple(self.alternatives), self.arrangement == "one_after_the_other"
+        places = choice.PLACES if apart else choice.SIDES
+        columns: dict[str, tuple[str, ...] | None] = {"chosen": names, "side": places}
+        columns |= dict.fromkeys(places, names)
+        columns |= {"original": names, "correct": None} if self.original is not None else {}
+        return columns | dict.fromkeys(["decision_time", "views"] if apart else ["views"])
+
+    @property
     def key_part(self) -> TaskKeys:
         """The task's keys."""
         return self.keys

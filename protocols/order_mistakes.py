@@ -71,13 +71,18 @@ def _adaptive(study: Study, order: AdaptiveOrder) -> Iterator[Mistake]:
             listed = ", ".join(str(level) for level in levels)
             yield Mistake(("order", "rule", "start", i), f"{start:g} is no level of {order.of}; there are: {listed}")
     condition = read_condition(order.yes)
-    columns = [*study.task.responses, "response_time", *study.factors]
+    recorded = study.task.recorded
+    columns = [*recorded, "response_time", *study.factors]
     if condition is not None:
+        words = recorded.get(condition.column)
+        if words is not None and not condition.value.startswith("$") and condition.value not in words:
+            message = f"{condition.column} is never {condition.value}; it can be: {', '.join(words)}"
+            yield Mistake(("order", "yes"), message)
         for column in [condition.column, *([condition.value[1:]] if condition.value.startswith("$") else [])]:
             if column not in columns:
                 yield Mistake(("order", "yes"), no_such(column, columns, "factor or part of a response"))
     if condition is None:
-        message = f"{order.yes!r} is no condition; write one on the response, as `chosen == left` or `rating >= 3`"
+        message = f"{order.yes!r} is no condition; write one on the response, as `side == left` or `rating >= 3`"
         yield Mistake(("order", "yes"), message)
     if isinstance(order.rule, QuestPlusRule) and order.rule.function == "weibull":
         for field, values in (("levels", levels), ("thresholds", order.rule.thresholds or [])):

@@ -46,6 +46,11 @@ class TaskPart(SettingsPart):
     measures: ClassVar[tuple[str, ...]] = ()
 
     @property
+    def recorded(self) -> Mapping[str, tuple[str, ...] | None]:
+        """Columns that the response fills in this study, to the words they can hold, or None for numbers."""
+        return dict.fromkeys(self.responses)
+
+    @property
     def asked(self) -> str:
         """The question under the walks, "" for none."""
         return ""

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from experiment_app.command import app, run
+from protocols.study_file import read_study
 from tests.protocols.studies import changed
 
 COMMANDS = tuple(name for name in app if not name.startswith("-"))
@@ -169,3 +170,10 @@ def test_help_does_not_import_the_heavy_rooms():
     code = f"import sys, experiment_app.command; print([m for m in {heavy} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_a_mistake_in_line_100_is_told_with_that_number_and_not_as_a_picture(tmp_path, capfd):
+    text = read_study("walk_ratio").text
+    (tmp_path / "s.yaml").write_text("#\n" * 99 + "stdy: x\n" + text, encoding="utf-8")
+    assert run(["check", str(tmp_path / "s.yaml")]) == 2
+    assert "s.yaml:100:1: " in capfd.readouterr().err

@@ -55,6 +55,25 @@ def test_a_mistake_in_a_choice_study_is_one_sentence(tmp_path, old, new, sentenc
     assert lines[0].startswith(f"{tmp_path / 's.yaml'}:")
 
 
+@pytest.mark.parametrize(
+    ("yes", "sentence"),
+    [
+        ("chosen == left", "order.yes: chosen is never left; it can be: captured, rebuilt"),
+        ("side == first", "order.yes: side is never first; it can be: left, right"),
+        ("first == rebuilt", "first is no factor or part of a response"),  # they stand side by side
+        ("decision_time < 2", "decision_time is no factor or part of a response"),
+        ("chosen != $original", ""),
+        ("side == left", ""),
+        ("left == rebuilt", ""),
+    ],
+)
+def test_an_answer_that_no_trial_can_have_places_nothing_and_is_refused(tmp_path, yes, sentence):
+    order = f"order: {{kind: adaptive, of: speed, yes: {yes}, rule: {{kind: staircase}}}}"
+    says = said(tmp_path, "poulaine_reconstruction", ("order: random", order))
+    assert sentence in says
+    assert bool(sentence) == ("order.yes" in says)
+
+
 RATING = [
     ("minimum: 0, maximum: 4", "minimum: 4, maximum: 4", "minimum 4 is not below maximum 4"),
     ("step: 1,", "step: 3,", "steps of 3 do not lead from 0 to 4"),
