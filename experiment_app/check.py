@@ -129,7 +129,7 @@ def expected_minutes(study: Study) -> float:
     words = sum(len(page.text.split()) for page in shown if page is not None)
     trials = len(make_trials(study, seed=1)) + len(study.practice)
     breaks = (trials // study.breaks.every) * 60.0 if study.breaks else 0.0
-    answering = trials * (study.task.seconds + study.interval)
+    answering = trials * (study.task.seconds(study.stimulus) + study.interval)
     return words / READING_SPEED + (len(study.participants.questions) * 8.0 + answering + breaks) / 60.0
 
 

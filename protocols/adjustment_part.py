@@ -61,9 +61,8 @@ class Adjustment(TaskPart):
         """Field to the type of its values."""
         return {"start": StepFrequency}
 
-    @property
-    def seconds(self) -> float:
-        """s that a participant typically takes for a trial."""
+    def seconds(self, stimulus: Stimulus) -> float:
+        """s that a participant typically takes for a trial, whatever is walking."""
         return max(TYPICAL, self.minimum_looking_time)
 
     @property

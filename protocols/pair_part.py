@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 DECIDING = 4.0
 """s a participant typically takes to decide once both alternatives can be seen."""
 
+SEARCHING = 28.0
+"""s that two crowds are looked at where nothing ends them: as long as the crowds of Niay (2022, section 6.1) walk."""
+
 
 class PairPart(TaskPart):
     """Alternatives shown side by side or one after the other, and a question about them."""
@@ -62,13 +65,21 @@ class PairPart(TaskPart):
         """How the alternatives are shown."""
         return Showing(self.arrangement, self.time_limit, self.gap, self.views)
 
-    @property
-    def seconds(self) -> float:
-        """s that a participant typically takes for a trial; with a limit, half of it if that is longer."""
+    def seconds(self, stimulus: Stimulus) -> float:
+        """s that a participant typically takes for a trial.
+
+        With a limit, half of it if that is longer: a pair of walkers is soon told apart. Crowds are searched for as
+        long as they walk; without a limit, for SEARCHING.
+        """
         limit = self.time_limit or 0.0
+        crowds = stimulus.crowd is not None
         if self.arrangement == "one_after_the_other":
-            return max(len(self.alternatives) * (limit + self.gap) + DECIDING, self.minimum_looking_time)
-        return max(DECIDING, limit / 2.0, self.minimum_looking_time)
+            typical = len(self.alternatives) * (limit + self.gap) + DECIDING
+        elif crowds:
+            typical = limit or SEARCHING
+        else:
+            typical = max(DECIDING, limit / 2.0)
+        return max(typical, self.minimum_looking_time)
 
     def walks(self, stimulus: Stimulus, levels: Mapping[str, Level]) -> dict[str, Walk]:
         """Name of every alternative to its walk in a trial with these levels, in the order of the file."""

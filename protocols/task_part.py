@@ -55,10 +55,9 @@ class TaskPart(SettingsPart):
         """The question under the walks, "" for none."""
         return ""
 
-    @property
     @abstractmethod
-    def seconds(self) -> float:
-        """s that a participant typically takes for a trial."""
+    def seconds(self, stimulus: Stimulus) -> float:
+        """s that a participant typically takes for a trial with this stimulus."""
 
     @property
     def balanced(self) -> bool:

@@ -69,3 +69,9 @@ def test_one_motion_per_sex_may_be_written_as_a_number():
     text = read_study("crowd_variety").text.replace('"1:25", "1"]', '"1:25", 1]').replace('"1": 0.4', "1: 0.4")
     text = text.replace('variation: "1", size: 250', "variation: 1, size: 250")
     assert inconsistencies(parse_study("s.yaml", text).study) == []
+
+
+def test_two_crowds_are_searched_for_the_28_s_they_walk_and_two_walkers_are_told_apart_sooner():
+    crowds, walkers = (read_study(name).study for name in ("crowd_variety", "poulaine_reconstruction"))
+    assert crowds.task.seconds(crowds.stimulus) == 28.0  # Niay 2022, section 6.1
+    assert crowds.task.seconds(walkers.stimulus) == 14.0
