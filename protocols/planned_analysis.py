@@ -102,6 +102,10 @@ def _measure(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake
         message = f"{plan.measure} is not what {study.task.kind} trials give; they give {given}"
         yield Mistake((*at, "measure"), message)
         return
+    column = "correct" if plan.measure == "confusion_rate" else plan.measure
+    if column in study.task.responses and column not in study.task.recorded:
+        needs = "task.original" if column == "correct" else "walks one after the other"
+        yield Mistake((*at, "measure"), f"{plan.measure} needs {needs}, which this study does not have")
     if plan.measure != "normalised_walk_ratio":
         if plan.heights is not None:
             yield Mistake((*at, "heights"), f"{plan.measure} needs no heights; remove them", on_key=True)

@@ -74,6 +74,17 @@ def test_an_answer_that_no_trial_can_have_places_nothing_and_is_refused(tmp_path
     assert bool(sentence) == ("order.yes" in says)
 
 
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (("  original: captured ", "  # original: captured "), "analysis.measure: confusion_rate needs task.original"),
+        (("measure: response_time", "measure: decision_time"), "decision_time needs walks one after the other"),
+    ],
+)
+def test_a_measure_that_no_trial_would_have_is_refused_before_anybody_comes(tmp_path, change, sentence):
+    assert sentence in said(tmp_path, "poulaine_reconstruction", change)
+
+
 RATING = [
     ("minimum: 0, maximum: 4", "minimum: 4, maximum: 4", "minimum 4 is not below maximum 4"),
     ("step: 1,", "step: 3,", "steps of 3 do not lead from 0 to 4"),
