@@ -117,14 +117,16 @@ def _strike(lowest: Floats, times: Floats, period: float) -> float:
 def _step_length(soles: Floats, lowest: Floats, times: Floats, strike: float, side: int, sole: Sole) -> float:
     """m: the striking foot's heel ahead of where the standing foot's heel stood, both on the ground just after.
 
-    The standing foot may have left its heel; its toes tell where it was.
+    Where the standing foot has left its heel, its toes tell where that was.
     """
     frame = int(np.ceil(strike / times[1] + 0.02 * len(times))) % len(times)
     standing = soles[frame, 1 - side]
     if lowest[frame, 1 - side] > TOUCHING:
         raise ValueError("one foot leaves the ground before the other strikes")
-    along = (standing[2] - standing[1]) * (1.0, 0.0, 1.0)
-    heel = standing[2] - (sole.tip + sole.heel) * along / np.linalg.norm(along)
+    heel = standing[0]
+    if heel[1] > TOUCHING:
+        along = (standing[2] - standing[1]) * (1.0, 0.0, 1.0)
+        heel = standing[2] - (sole.tip + sole.heel) * along / np.linalg.norm(along)
     return float(soles[frame, side, 0, 2] - heel[2])
 
 

@@ -4,8 +4,8 @@ sex: female            # or male: decides the body
 height: 1.72           # m
 weight: 65             # kg
 age: 31                # years
-licence: CC BY 4.0     # what others may do with these captures
-source: our laboratory, 2025
+licence: CC BY 4.0     # optional: what others may do with these captures; else "not stated"
+source: our laboratory, 2025  # optional: else "not stated"
 complete: true         # fill the grid of speed and step frequency with the gait model
 comfort_speed: 1.25    # m/s, optional: else the median speed of the clips
 symmetric: true        # optional: left and right are averaged; else a limp stays a limp
@@ -24,6 +24,7 @@ from stimuli.importing.errors import ImportingError
 
 SEXES = {"female": "F", "woman": "F", "f": "F", "male": "M", "man": "M", "m": "M"}
 RANGES = {"height": (1.0, 2.3, "m"), "weight": (20.0, 250.0, "kg"), "age": (5.0, 110.0, "years")}
+NOT_STATED = "not stated"
 KEYS = ("sex", *RANGES, "licence", "source", "complete", "comfort_speed", "symmetric")
 
 
@@ -56,7 +57,7 @@ def read_description(folder: Path) -> Description:
     unknown = [str(key) for key in content if key not in KEYS]
     if unknown:
         raise ImportingError(f"{path}: {', '.join(unknown)} is no setting; the settings are {', '.join(KEYS)}")
-    missing = [key for key in ("sex", *RANGES, "licence", "source") if key not in content]
+    missing = [key for key in ("sex", *RANGES) if key not in content]
     if missing:
         raise ImportingError(f"{path}: {', '.join(missing)} is missing")
     sex = str(content["sex"]).lower()
@@ -66,8 +67,8 @@ def read_description(folder: Path) -> Description:
     speed = content.get("comfort_speed")
     return Description(
         sex=SEXES[sex],
-        licence=_text(path, "licence", content["licence"]),
-        source=_text(path, "source", content["source"]),
+        licence=_text(path, "licence", content),
+        source=_text(path, "source", content),
         complete=_flag(path, "complete", content),
         symmetric=_flag(path, "symmetric", content),
         comfort_speed=None if speed is None else _number(path, "comfort_speed", speed, 0.3, 2.5, "m/s"),
@@ -88,8 +89,11 @@ def _number(path: Path, key: str, value: Any, low: float, high: float, unit: str
     return float(value)
 
 
-def _text(path: Path, key: str, value: Any) -> str:
+def _text(path: Path, key: str, content: dict[str, Any]) -> str:
+    if key not in content:
+        return NOT_STATED
+    value = content[key]
     text = " ".join(str(value).split()) if value is not None else ""
     if not text:
-        raise ImportingError(f"{path}: {key} is empty; write unknown if it is not known")
+        raise ImportingError(f"{path}: {key} is empty; leave the line out if it is not known")
     return text

@@ -330,6 +330,21 @@ def test_a_mistake_in_actor_yaml_is_one_sentence(tmp_path, changes, reason):
         read_description(described(tmp_path / "in", **changes))
 
 
+def test_sex_height_weight_and_age_are_enough_for_an_actor(tmp_path):
+    read = read_description(described(tmp_path / "in", licence=None, source=None))
+    assert (read.licence, read.source) == ("not stated", "not stated")
+
+
+@needs_captures
+@pytest.mark.parametrize("height", [1.75, 1.85])
+def test_a_tall_persons_shortest_steps_are_measured_from_the_heel_they_stand_on(tmp_path, height):
+    """At 0.70 m/s and 120 steps/min the foot still stands on its heel, toes up, when the other one strikes."""
+    folder = captured(tmp_path / "in", "07_01", "07_03", "07_08", "07_10", complete=True, height=height)
+    actor = import_folder(folder, "tall", tmp_path / "library")
+    delivered = delivered_gait(actor_of(actor), 0.7, 120.0)
+    assert delivered.speed == pytest.approx(0.7, rel=1e-4)
+
+
 def test_an_import_never_writes_over_an_actor_unless_told(tmp_path):
     from stimuli.actor_library import ActorError, check_name
 
