@@ -33,8 +33,8 @@ def main() -> int:
     print("== tests", flush=True)
     pytest = [sys.executable, "-m", "pytest", "--cov", "--cov-report=term:skip-covered", *sys.argv[1:]]
     with virtual_display() as environment:
-        if subprocess.run(pytest, cwd=ROOT, env=environment).returncode:
-            failed.append("tests")
+        if status := subprocess.run(pytest, cwd=ROOT, env=environment).returncode:
+            failed.append("tests" if status == 1 else f"tests (pytest ended with {status})")
     if failed:
         print(f"failed: {', '.join(failed)}", file=sys.stderr)
     return 1 if failed else 0
