@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Iterable
 
 import moderngl
 import numpy as np
@@ -10,6 +11,8 @@ import numpy as np
 from experiment_app.render.body_buffers import LIT_FORMAT, LIT_NAMES, SHADOW_FORMAT, SHADOW_NAMES, finishes_of, packed
 from experiment_app.render.cameras import Viewpoint, as_uniform
 from experiment_app.render.crowd_levels import (
+    FAR_LEVEL,
+    Batch,
     Instances,
     distances,
     heights_on_screen,
@@ -35,17 +38,9 @@ class CrowdPass:
 
     def __init__(self, context: moderngl.Context, outdoors: bool) -> None:
         self._context = context
-        air = HAZE if outdoors else {}
-        self._lit = {
-            (far, faded): build(
-                context,
-                *(("crowd_far.vert", "crowd_far.frag") if far else ("walker.vert", "walker.frag")),
-                {**(FAR if far else CROWD), **air, **(FADED if faded else {})},
-            )
-            for far in (False, True)
-            for faded in (False, True)
-        }
-        self._shadow = build(context, "walker_shadow.vert", "nothing.frag", FAR)
+        self._air = HAZE if outdoors else {}
+        self._lit: dict[tuple[bool, bool, int], moderngl.Program] = {}  # by far, faded, carriers
+        self._shadow: dict[int, moderngl.Program] = {}  # by carriers
         self._parts = build(context, "part_map.vert", "part_map.frag", {**SHADER_CONSTANTS, **CROWD})
         self._meshes: CrowdMeshes | None = None
         self._poses = _table(context, 64, 1)
@@ -58,8 +53,8 @@ class CrowdPass:
         if self._meshes is None or self._meshes.cast is not cast:
             if self._meshes is not None:
                 self._meshes.release()
-            programs = (*self._lit.values(), self._shadow, self._parts)
-            self._meshes = CrowdMeshes(self._context, cast, programs, bare=(self._shadow, self._parts))
+            self._meshes = CrowdMeshes(self._context, cast)
+            self._build(self._meshes.carriers)
         levels = self._meshes.levels
         places = crowd.rows[:, 63, :3]
         distance = distances(viewpoint, places)
@@ -82,45 +77,68 @@ class CrowdPass:
 
     def draw_shadow(self, sunlight: Sunlight) -> None:
         """Draws the depth of everybody into the bound shadow map."""
-        self._shadow["world_to_shadow_clip"].write(as_uniform(sunlight.world_to_clip))
-        self._render(self._shadow, self._casting, 1)
+        kinds: dict[int, list[Batch]] = defaultdict(list)
+        for batch in self._casting.batches:
+            kinds[self._carriers(batch)].append(batch)
+        for carriers, batches in kinds.items():
+            program = self._shadow[carriers]
+            program["world_to_shadow_clip"].write(as_uniform(sunlight.world_to_clip))
+            self._render(program, 1, batches)
 
     def draw(self, viewpoint: Viewpoint, sunlight: Sunlight) -> None:
         """Draws everybody into the bound framebuffer."""
         assert self._meshes is not None
         self._context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         self._meshes.palette.use(PALETTE_UNIT)
-        for (far, faded), program in self._lit.items():
+        kinds: dict[tuple[bool, bool, int], list[Batch]] = defaultdict(list)
+        for batch in self._seen.batches:
+            kinds[batch.far, batch.faded, self._carriers(batch)].append(batch)
+        for kind, batches in kinds.items():
+            program = self._lit[kind]
             set_if_used(program, "world_to_clip", viewpoint.matrix_bytes)
             set_if_used(program, "palette", PALETTE_UNIT)
             set_if_used(program, "finishes", self._meshes.finishes)
             set_light(program, sunlight, viewpoint.eye)
-            self._render(program, self._seen, 0, (far, faded))
+            self._render(program, 0, batches)
 
     def draw_parts(self, viewpoint: Viewpoint) -> None:
         """Draws joint and walker of every pixel into the bound part map."""
         set_if_used(self._parts, "world_to_clip", viewpoint.matrix_bytes)
-        self._render(self._parts, self._seen, 0)
+        self._render(self._parts, 0, self._seen.batches)
 
-    def _render(
-        self, program: moderngl.Program, instances: Instances, table: int, only: tuple[bool, bool] | None = None
-    ) -> None:
-        """Draws batches of instances; only: those that are (far, faded)."""
+    def _build(self, carriers: list[list[int]]) -> None:
+        """Programs for vertices with so many joints: none asks which of them carry. carriers: per body and level."""
+        for level, count in {(level, count) for body in carriers for level, count in enumerate(body)}:
+            joints = {"INFLUENCES": str(count)}
+            if count not in self._shadow:
+                self._shadow[count] = build(self._context, "walker_shadow.vert", "nothing.frag", {**FAR, **joints})
+            for far in (level >= FAR_LEVEL - 1, level >= FAR_LEVEL):
+                for faded in (False, True):
+                    if (far, faded, count) not in self._lit:
+                        files = ("crowd_far.vert", "crowd_far.frag") if far else ("walker.vert", "walker.frag")
+                        constants = {**(FAR if far else CROWD), **self._air, **(FADED if faded else {}), **joints}
+                        self._lit[far, faded, count] = build(self._context, *files, constants)
+
+    def _carriers(self, batch: Batch) -> int:
+        assert self._meshes is not None
+        return self._meshes.carriers[batch.body][batch.level]
+
+    def _render(self, program: moderngl.Program, table: int, batches: Iterable[Batch]) -> None:
+        """Draws batches of the instances in a table: 0 the seen, 1 the casting."""
         assert self._meshes is not None
         self._poses.use(POSES_UNIT)
         self._tables[table].use(INSTANCES_UNIT)
         set_if_used(program, "poses", POSES_UNIT)
         set_if_used(program, "instances", INSTANCES_UNIT)
-        array = self._meshes.arrays[program]
-        for batch in instances.batches:
-            if only is None or only == (batch.far, batch.faded):
-                first, count = self._meshes.parts[batch.body][batch.level]
-                program["first_walker"].value = batch.first
-                array.render(moderngl.TRIANGLES, vertices=count, first=first, instances=batch.count)
+        array = self._meshes.array(program, bare=program is self._parts or table == 1)
+        for batch in batches:
+            first, count = self._meshes.parts[batch.body][batch.level]
+            program["first_walker"].value = batch.first
+            array.render(moderngl.TRIANGLES, vertices=count, first=first, instances=batch.count)
 
     def release(self) -> None:
         """Frees the GPU's memory."""
-        programs = (*self._lit.values(), self._shadow, self._parts)
+        programs = (*self._lit.values(), *self._shadow.values(), self._parts)
         for part in (self._meshes, self._poses, *self._tables, *programs):
             if part is not None:
                 part.release()
@@ -129,52 +147,52 @@ class CrowdPass:
 class CrowdMeshes:
     """Every level of every body of a crowd in one buffer, and the looks.
 
-    bare: programs that need places only; parts: per body and level, first index and count of indices
+    parts: per body and level, first index and count of indices; carriers: most joints that one of its vertices has
     """
 
-    def __init__(
-        self,
-        context: moderngl.Context,
-        cast: CrowdLook,
-        programs: Sequence[moderngl.Program],
-        bare: Sequence[moderngl.Program],
-    ) -> None:
+    def __init__(self, context: moderngl.Context, cast: CrowdLook) -> None:
+        self._context = context
         self.cast = cast
         numbers = {name: number for number, name in enumerate(cast.materials)}
         self.parts: list[list[tuple[int, int]]] = []
+        self.carriers: list[list[int]] = []
         vertices, indices = [], []
         first_vertex = first_index = 0
         for body in cast.bodies:
             self.parts.append([])
+            self.carriers.append([])
             for surfaces in body.levels:
                 own, triangles = packed(surfaces, [numbers[surface.name] for surface in surfaces])
                 _heaviest_first(own)
                 vertices.append(own)
                 indices.append(triangles.ravel() + np.uint32(first_vertex))
                 self.parts[-1].append((first_index, triangles.size))
+                self.carriers[-1].append(int(np.count_nonzero(own["weights"], axis=1).max()))
                 first_vertex += len(own)
                 first_index += triangles.size
         self.levels = min(len(body.levels) for body in cast.bodies)
         self._vertices = context.buffer(np.concatenate(vertices).tobytes())
         self._indices = context.buffer(np.concatenate(indices).tobytes())
-        whole = (self._vertices, LIT_FORMAT, *LIT_NAMES)
-        places = (self._vertices, SHADOW_FORMAT, *SHADOW_NAMES)
-        self.arrays = {
-            program: context.vertex_array(program, [places if program in bare else whole], self._indices)
-            for program in programs
-        }
+        self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
         self.palette = _table(context, *cast.colours.shape[1::-1])
         self.palette.write(np.ascontiguousarray(cast.colours, np.float32))
         self.finishes = finishes_of(cast.materials)
 
+    def array(self, program: moderngl.Program, bare: bool) -> moderngl.VertexArray:
+        """The meshes as a program takes them; bare: it needs places only."""
+        if program not in self._arrays:
+            wanted = (SHADOW_FORMAT, *SHADOW_NAMES) if bare else (LIT_FORMAT, *LIT_NAMES)
+            self._arrays[program] = self._context.vertex_array(program, [(self._vertices, *wanted)], self._indices)
+        return self._arrays[program]
+
     def release(self) -> None:
         """Frees the GPU's memory."""
-        for part in (*self.arrays.values(), self._vertices, self._indices, self.palette):
+        for part in (*self._arrays.values(), self._vertices, self._indices, self.palette):
             part.release()
 
 
 def _heaviest_first(vertices: np.ndarray) -> None:
-    """Orders each vertex's joints by weight, so that the shader can stop at the first that carries nothing."""
+    """Orders each vertex's joints by weight, so that those beyond a level's carriers carry nothing."""
     order = np.argsort(-vertices["weights"], axis=1, kind="stable")
     for name in ("weights", "joints"):
         vertices[name] = np.take_along_axis(vertices[name], order, axis=1)

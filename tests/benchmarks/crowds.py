@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
@@ -24,8 +24,9 @@ import moderngl
 import numpy as np
 
 from experiment_app.crowds import END, drawn_crowd, plan_of
-from experiment_app.render.crowd_pass import CrowdPass
+from experiment_app.render.crowd_pass import CROWD, FAR, CrowdPass
 from experiment_app.render.renderer import Renderer
+from experiment_app.render.shadow_map import ShadowMap
 from experiment_app.scene import Camera, Crowd, Ground, Scene, Walker
 from experiment_app.walkers import drawn_walkers
 from experiment_app.windows.offscreen import offscreen_context
@@ -174,8 +175,8 @@ def rivals() -> None:
             if theirs is None:
                 print(f"  {name} is not installed for {python}; set GAITLAB_RIVALS to a Python that has it")
                 continue
-            for size, times in theirs.items():
-                print(f"  {size:5} {name:22} {times}", flush=True)
+            for size, timed in theirs.items():
+                print(f"  {size:5} {name:22} {timed}", flush=True)
             for kind, times in ours.items():
                 against = {key: times[1000][key] / theirs[1000][key] for key in ("wall_p10", "wall", "cpu")}
                 shares = ", ".join(f"{key} {value:.2f}" for key, value in against.items())
@@ -195,12 +196,22 @@ def _ours(sizes: tuple[int, ...], lod: int | None, shadows: bool) -> dict[int, _
     context = offscreen_context()
     target = context.simple_framebuffer((1280, 720))
     renderer = Renderer(context, (1280, 720), 1.0, 1)
-    unshaded = nullcontext() if shadows else patch.object(CrowdPass, "draw_shadow", lambda *_: None)
-    with unshaded:
+    with nullcontext() if shadows else _without_shadows():
         found = {size: _timed(renderer, target, _walking(size, "plain", lod)) for size in sizes}
     renderer.release()
     context.release()
     return found
+
+
+@contextmanager
+def _without_shadows() -> Iterator[None]:
+    """Nothing of shadows is left, as in the rivals: no map cleared, none drawn into it, none read by a shader."""
+    with ExitStack() as patches:
+        patches.enter_context(patch.object(ShadowMap, "begin", lambda _: None))
+        patches.enter_context(patch.object(CrowdPass, "draw_shadow", lambda *_: None))
+        for constants in (CROWD, FAR):
+            patches.enter_context(patch.dict(constants, SHADOW_TAPS="0"))
+        yield
 
 
 def _theirs(python: str, script: str, glb: Path, places: Path) -> dict[int, _Timed] | None:

@@ -26,7 +26,11 @@ vec2 turned_on(vec2 direction) {
 // How much of the sun reaches a point, 0..1; 1 and no work where it is not wanted. The penumbra widens with the distance to what casts the shadow
 // (percentage-closer soft shadows, Fernando 2005), with fixed taps so that equal scenes give equal pixels.
 // The loops' lengths depend on the point because software drivers run both sides of every `if`.
-#if BLOCKER_TAPS == 0
+#if SHADOW_TAPS == 0
+float sunlight(vec3 world, vec3 normal, bool wanted) {
+    return 1.0;
+}
+#elif BLOCKER_TAPS == 0
 // The same with a soft edge of one width everywhere, for crowds, whose shadow map is coarser than any penumbra.
 float sunlight(vec3 world, vec3 normal, bool wanted) {
     vec3 at = (world_to_light * vec4(world + normal * SHADOW_OFFSET, 1.0)).xyz;

@@ -1,5 +1,6 @@
-// Four-weight linear skinning. One row of `poses` per walker: 21 joints x 3 texels (rows of a 3x4 matrix), then
+// Linear skinning. One row of `poses` per walker: 21 joints x 3 texels (rows of a 3x4 matrix), then
 // one texel with the walker's place. The same arithmetic as skin_matrices applied with NumPy.
+// INFLUENCES: joints that a vertex has at most, the first ones; all are read, for a loop that may end early costs more.
 
 #ifndef INFLUENCES
 #define INFLUENCES 4
@@ -34,9 +35,6 @@ void blend_matrix(out vec4 x_row, out vec4 y_row, out vec4 z_row) {
     for (int i = 0; i < INFLUENCES; i++) {
         int texel = int(joints[i]) * 3;
         float weight = weights[i];
-#ifdef CROWD
-        if (weight == 0.0) break;  // the heaviest come first, and most vertices have one or two joints
-#endif
         x_row += weight * texelFetch(poses, ivec2(texel, walker), 0);
         y_row += weight * texelFetch(poses, ivec2(texel + 1, walker), 0);
         z_row += weight * texelFetch(poses, ivec2(texel + 2, walker), 0);
