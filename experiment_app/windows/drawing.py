@@ -17,6 +17,7 @@ from experiment_app.render.part_map import PartMap
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Scene
 from experiment_app.walkers import drawn_walkers, pose_checksum
+from experiment_app.windows.driver_memory import keep_freed_memory
 from experiment_app.windows.patch import Patch
 from experiment_app.windows.window import Flip
 
@@ -131,6 +132,7 @@ class Drawing:
         glfw.make_context_current(self._handle)
         glfw.swap_interval(1)
         self.context = moderngl.create_context(require=330)
+        keep_freed_memory(self.context)
         self.info = dict(self.context.info)
         # through ctypes, because moderngl's own finish would keep Python's lock and so delay the stamps of keys
         self._finish = ctypes.cast(glfw.get_proc_address("glFinish"), ctypes.CFUNCTYPE(None))

@@ -15,6 +15,7 @@ from experiment_app.observer import SimulatedParticipant
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Scene
 from experiment_app.walkers import drawn_walkers, measured_gait, pose_checksum
+from experiment_app.windows.driver_memory import keep_freed_memory
 from experiment_app.windows.window import Flip
 from protocols.events import Event
 from protocols.session import Session
@@ -26,9 +27,12 @@ def offscreen_context() -> moderngl.Context:
     choices: tuple[dict[str, Any], ...] = ({"backend": "egl"}, {})
     for settings in choices:
         try:
-            return moderngl.create_context(standalone=True, require=330, **settings)
+            context = moderngl.create_context(standalone=True, require=330, **settings)
         except Exception as error:  # glcontext raises bare Exceptions
             problems.append(str(error))
+        else:
+            keep_freed_memory(context)
+            return context
     raise UsageError(
         f"no OpenGL 3.3 was found ({problems[0]}); on Debian or Ubuntu install it with "
         "`apt-get install libegl1 libgl1 libgl1-mesa-dri`."
