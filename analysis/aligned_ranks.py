@@ -55,7 +55,9 @@ def art_anova(
         rows.append(_pooled(table, row, means, effect) if strata == "pooled" else row)
     columns = ["effect", "df1", "df2", "ss", "ss_error", "F", "p", "eta_p2", "epsilon_gg", "p_gg"]
     result = pd.DataFrame(rows)[columns].reset_index(drop=True)
-    result.attrs = {"notes": list(means.notes), "n": len(means.subjects), "left_out": dict(means.left_out)}
+    constant = list(result.loc[result["F"].isna(), "effect"])
+    flat = [f"{dv} has no variance left to test {', '.join(constant)}, so no F and no p are given."] if constant else []
+    result.attrs = {"notes": [*means.notes, *flat], "n": len(means.subjects), "left_out": dict(means.left_out)}
     return result
 
 
@@ -72,7 +74,7 @@ def _pooled(table: pd.DataFrame, row: pd.Series, means: CellMeans, effect: tuple
     F = (row["ss"] / row["df1"]) / (error / df) if error > 0 else math.nan
     changed["ss_error"], changed["df2"], changed["F"] = error, df, F
     changed["p"] = float(special.fdtrc(row["df1"], df, F))
-    changed["eta_p2"] = row["ss"] / (row["ss"] + error)
+    changed["eta_p2"] = row["ss"] / (row["ss"] + error) if error > 0 else math.nan
     return changed
 
 

@@ -48,6 +48,8 @@ def mixed_model(
     """
     names, numeric = names_of(factors), names_of(covariates)
     require(data, [dv, subject, stimulus, *names, *numeric])
+    if subject == stimulus:
+        raise AnalysisError(f"{subject!r} is named as participant and as stimulus; name the column of each.")
     y = numbers(data, dv)
     X, terms, columns = _fixed(data, names, numeric, levels)
     random = [labels(data, subject), labels(data, stimulus)]

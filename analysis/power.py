@@ -62,6 +62,8 @@ def power_rm_anova(
         raise AnalysisError(f"A {effect} effect needs two or more {'groups' if measures > 1 else 'measures'}.")
     if not (-1 / max(1, measures - 1) < rho < 1 and 0 < epsilon <= 1):
         raise AnalysisError("rho must be a possible correlation below 1, and epsilon above 0 and at most 1.")
+    if (eta_p2 is not None and not 0 <= eta_p2 < 1) or (f is not None and not 0 <= f < math.inf):
+        raise AnalysisError("f must be a number from 0 up, and eta_p2 one from 0 up to but not including 1.")
     size = f if f is not None else None if eta_p2 is None else math.sqrt(eta_p2 / (1 - eta_p2))
     if [n, size, power].count(None) != 1:
         raise AnalysisError("Give two of n, effect size (f or eta_p2) and power; the third is computed.")

@@ -167,9 +167,11 @@ def first_headers(data: Path, study: str) -> list[dict[str, Any]]:
         for path in sorted(person.glob(f"run-*/{JOURNAL}"))[:1]:
             try:
                 with open(path, encoding="utf-8") as file:
-                    headers.append(decode_line(file.readline()))
+                    line = decode_line(file.readline())
             except (OSError, ValueError):
                 continue
+            if line["kind"] == "header":
+                headers.append(line)
     return headers
 
 
@@ -227,6 +229,8 @@ def run_at(folder: Path) -> Run:
     lines = journal_lines(folder / JOURNAL)[0] if (folder / JOURNAL).is_file() else ()
     if not lines:
         raise UsageError(f"{folder} holds no recorded run; name a folder as data/walk_ratio/sourcedata/sub-P01/run-1.")
+    if lines[0]["kind"] != "header":
+        raise UsageError(f"{folder / JOURNAL} does not begin with its header, so nothing is known of the run.")
     return Run(folder, lines[0]["study"], lines[0]["participant"], lines[0]["run"], lines)
 
 

@@ -54,5 +54,7 @@ def newest_run(folder: Path, participant: str = "") -> Run:
     lines = journal_lines(path)[0]
     if not lines:
         raise UsageError(f"{path} is empty yet; try again in a moment.")
+    if lines[0]["kind"] != "header":
+        raise UsageError(f"{path} does not begin with its header, so nothing is known of the run.")
     person = path.parents[1].name.removeprefix("sub-")
     return Run(path.parent, folder.name, person, int(path.parent.name.removeprefix("run-")), lines)

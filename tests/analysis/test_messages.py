@@ -11,7 +11,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis import AnalysisError, AnalysisWarning, anova, normality, pairwise, t_tests
+from analysis import (
+    AnalysisError,
+    AnalysisWarning,
+    anova,
+    art_anova,
+    mixed_model,
+    normality,
+    pairwise,
+    power_rm_anova,
+    t_tests,
+)
 from tests.analysis.reference import expected, table
 
 
@@ -152,3 +162,20 @@ def test_a_complete_table_warns_of_nothing() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         run(small())
+
+
+def test_ranks_of_equal_values_have_no_p_and_the_table_says_why() -> None:
+    result = art_anova(small().assign(score=1.0), "score", "id", ["speed", "cue"])
+    assert result["p"].isna().all()
+    assert any("score has no variance left to test speed, cue, speed:cue" in note for note in result.attrs["notes"])
+
+
+@pytest.mark.parametrize("size", [{"eta_p2": 1.2}, {"eta_p2": -0.1}, {"f": -0.2}, {"f": math.nan}])
+def test_an_effect_size_that_cannot_be_is_refused(size: dict[str, float]) -> None:
+    with pytest.raises(AnalysisError, match="eta_p2 one from 0"):
+        power_rm_anova(effect="within", measures=3, n=20, **size)
+
+
+def test_participant_and_stimulus_of_a_mixed_model_are_two_columns() -> None:
+    with pytest.raises(AnalysisError, match="'id' is named as participant and as stimulus"):
+        mixed_model(small(), "score", "id", "id", "speed")

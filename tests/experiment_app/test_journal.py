@@ -8,11 +8,12 @@ from collections import Counter
 
 import pytest
 
+from experiment_app.command import run as command
 from experiment_app.errors import RunError, UsageError
 from experiment_app.journal import append_line
 from experiment_app.opening import open_new, open_unfinished, unfinished_run
 from experiment_app.run_folder import journal_lines, participant_runs
-from protocols.record import Answered
+from protocols.record import Answered, encode_line
 from tests.experiment_app.sessions import opened, play
 from tests.protocols.studies import short
 
@@ -186,3 +187,13 @@ def test_a_run_killed_before_its_header_was_whole_begins_anew_and_keeps_the_scra
     assert run.run.number == 1
     assert (folder / "journal.torn-1").read_bytes() == left
     assert journal_lines(run.run.journal)[0][-2]["reason"] == "finished"
+
+
+@pytest.mark.parametrize("reader", ["replay", "console"])
+def test_a_journal_that_lost_its_header_is_refused_in_a_sentence(tmp_path, reader, capsys):
+    folder = tmp_path / "walk_ratio" / "sourcedata" / "sub-P01" / "run-1"
+    folder.mkdir(parents=True)
+    (folder / "journal.jsonl").write_text(encode_line(Answered(1.0, "age", 30)) + "\n", encoding="utf-8")
+    words = ["replay", str(folder)] if reader == "replay" else ["console", str(tmp_path / "walk_ratio"), "--once"]
+    assert command(words) == 2
+    assert "does not begin with its header" in capsys.readouterr().err
