@@ -26,6 +26,8 @@ def regression(data: pd.DataFrame, dv: str, predictors: str | Sequence[str], lev
     log_likelihood (AIC and BIC count the error variance), durbin_watson, shapiro_w, shapiro_p,
     loo_rmse (leave one out). Raises AnalysisError, also when predictors are linearly dependent.
     """
+    if not 0 < level < 1:
+        raise AnalysisError(f"level is a share between 0 and 1, as 0.95, not {level!r}.")
     fitted, terms, _ = _fitted(data, dv, names_of(predictors))
     X, y = fitted.model.exog, fitted.model.endog
     if float(fitted.centered_tss) <= 1e-26 * float(y @ y):

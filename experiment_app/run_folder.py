@@ -229,14 +229,22 @@ def run_at(folder: Path) -> Run:
     lines = journal_lines(folder / JOURNAL)[0] if (folder / JOURNAL).is_file() else ()
     if not lines:
         raise UsageError(f"{folder} holds no recorded run; name a folder as data/walk_ratio/sourcedata/sub-P01/run-1.")
-    if lines[0]["kind"] != "header":
-        raise UsageError(f"{folder / JOURNAL} does not begin with its header, so nothing is known of the run.")
+    _require_header(lines, folder / JOURNAL)
     return Run(folder, lines[0]["study"], lines[0]["participant"], lines[0]["run"], lines)
+
+
+def _require_header(lines: tuple[dict[str, Any], ...], path: Path) -> None:
+    if lines[0]["kind"] != "header":
+        raise UsageError(
+            f"{path} does not begin with its header, so nothing is known of the run; restore it from a copy."
+        )
 
 
 def _read(folder: Path, study: str, participant: str, number: int) -> Run:
     path = folder / JOURNAL
     lines = journal_lines(path)[0] if path.exists() else ()
+    if lines:
+        _require_header(lines, path)
     return Run(folder, study, participant, number, lines)
 
 

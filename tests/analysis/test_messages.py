@@ -20,6 +20,7 @@ from analysis import (
     normality,
     pairwise,
     power_rm_anova,
+    regression,
     t_tests,
 )
 from tests.analysis.reference import expected, table
@@ -179,3 +180,8 @@ def test_an_effect_size_that_cannot_be_is_refused(size: dict[str, float]) -> Non
 def test_participant_and_stimulus_of_a_mixed_model_are_two_columns() -> None:
     with pytest.raises(AnalysisError, match="'id' is named as participant and as stimulus"):
         mixed_model(small(), "score", "id", "id", "speed")
+
+
+def test_a_confidence_level_in_per_cent_is_refused_instead_of_giving_no_limits() -> None:
+    with pytest.raises(AnalysisError, match="a share between 0 and 1"):
+        regression(small(), "score", ["speed"], level=95)

@@ -196,4 +196,6 @@ def test_a_journal_that_lost_its_header_is_refused_in_a_sentence(tmp_path, reade
     (folder / "journal.jsonl").write_text(encode_line(Answered(1.0, "age", 30)) + "\n", encoding="utf-8")
     words = ["replay", str(folder)] if reader == "replay" else ["console", str(tmp_path / "walk_ratio"), "--once"]
     assert command(words) == 2
+    with pytest.raises(UsageError, match="restore it from a copy"):
+        participant_runs(tmp_path, "walk_ratio", "P01")
     assert "does not begin with its header" in capsys.readouterr().err
