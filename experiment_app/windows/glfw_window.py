@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import ctypes
+import os
+import sys
 from typing import Any
 
 import glfw
@@ -37,6 +40,7 @@ def open_window(title: str, full_screen: bool, display: int, size: tuple[int, in
         (glfw.AUTO_ICONIFY, False),
     ):
         glfw.window_hint(hint, value)
+    _let_go_of_egl()
     if full_screen and mode is not None:
         glfw.window_hint(glfw.REFRESH_RATE, mode.refresh_rate)
         handle = glfw.create_window(mode.size.width, mode.size.height, title, monitor, None)
@@ -54,3 +58,18 @@ def open_window(title: str, full_screen: bool, display: int, size: tuple[int, in
             "install the system's OpenGL libraries (the README's first command does)."
         )
     return handle, monitor
+
+
+def _let_go_of_egl() -> None:
+    """Makes no off-screen context current on this thread.
+
+    With one, which something drawn off-screen before may have left, the X server refuses the window's own context, and
+    Xlib ends the whole program for that.
+    """
+    if not sys.platform.startswith("linux"):
+        return
+    try:
+        egl = ctypes.CDLL("libEGL.so.1", mode=os.RTLD_NOLOAD | os.RTLD_LAZY)
+    except OSError:  # nothing was drawn off-screen: EGL is not loaded
+        return
+    egl.eglReleaseThread()

@@ -12,6 +12,7 @@ from experiment_app.injected_keys import KEY, KEYSYM, NOBODY, matched, measure_k
 from experiment_app.key_injector import Injector, can_inject
 from experiment_app.scene import Scene, Walker
 from experiment_app.windows.desktop import DesktopWindow
+from experiment_app.windows.offscreen import offscreen_context
 from experiment_app.windows.patch import Patch
 from protocols.events import Event, FocusLost, KeyDown, KeyUp
 from tests.benchmarks.measuring import machine
@@ -51,6 +52,13 @@ def test_no_injected_press_is_lost_or_doubled(capsys, keyboard):
     assert (errors.lost, errors.doubled, len(errors.presses), len(errors.releases)) == (0, 0, 40, 40)
     with capsys.disabled():
         print(f"\n  {machine()}: {errors.summary()}")
+
+
+def test_a_window_opens_after_something_was_drawn_off_screen():
+    context = offscreen_context()  # stays current on this thread
+    with small() as window:
+        assert window.period > 0.0
+    context.release()
 
 
 def test_holding_a_key_past_its_repeats_is_one_press_and_one_release_as_long_as_it_was_held():
