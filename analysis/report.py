@@ -163,6 +163,17 @@ def software() -> list[str]:
     return found
 
 
+def walks_shown(results: PlannedResults) -> list[str]:
+    """Where the walks came from, as the journals say, each with the actors (or styles) it holds for."""
+    sources: dict[str, list[str]] = {}
+    for run in results.recorded.runs:
+        for actor, source in sorted(run.header.get("walkers", {}).items()):
+            of = sources.setdefault(str(source), [])
+            if actor not in of:
+                of.append(str(actor))
+    return [f"{', '.join(of)}: {source}" for source, of in sources.items()]
+
+
 def _provenance(results: PlannedResults, files: Sequence[str]) -> Markup:
     recorded = dict.fromkeys(
         f"{name} {number}"
@@ -174,6 +185,7 @@ def _provenance(results: PlannedResults, files: Sequence[str]) -> Markup:
         ("Data", f"{results.recorded.journals} journal(s), SHA-256"),
         ("", element("span", results.recorded.data_hash, class_="hash")),
         ("Study file", element("span", ", ".join(study), class_="hash")),
+        ("Walks shown", "; ".join(walks_shown(results)) or "not recorded"),
         ("Analysed with", ", ".join(software())),
         ("Recorded with", ", ".join(recorded) or "not recorded"),
         ("Files", ", ".join(files)),

@@ -36,6 +36,7 @@ KNOWN = {
     "trials": Column("How many trials were finished, training left out."),
     "study_hash": Column("SHA-256 of the study file the run was recorded with."),
     "seed": Column("Seed of the order of trials."),
+    "walks": Column("Where each actor's walk (and each style) came from: captured, modelled, or how much of each."),
     "last_line_cut_off": Column("Whether the journal's last line was cut off while being written."),
     "trial": Column("Number of the trial in the run, from 1; training trials are numbered among themselves."),
     "practice": Column("Whether the trial was training.", levels={"true": "training", "false": "experiment"}),

@@ -45,6 +45,7 @@ def run_row(run: ExportedRun) -> dict[str, Any]:
         "sittings": run.sittings, "ended": run.ended, "trials": len({t.record["number"] for t in done}),
         "study_hash": header["study_hash"], "seed": header["seed"],
         **{f"key_{name}": key for name, key in header["keys"].items()},
+        "walks": "; ".join(f"{actor}: {source}" for actor, source in header.get("walkers", {}).items()),
         "last_line_cut_off": run.torn,
     }  # fmt: skip
 

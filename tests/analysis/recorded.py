@@ -51,6 +51,7 @@ def journal_lines(
             {"gaitlab": "0.1.0", "python": "3.11"},
             {"width": 1920},
             "2026-11-22T10:00:00Z",
+            walkers={"F1": "modelled", "F2": "4 cycles captured, 21 modelled", "M1": "modelled", "M2": "modelled"},
         ),
         Consented(1.0, True),
         Answered(2.0, "age", 20 + number % 13),

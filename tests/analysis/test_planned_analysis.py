@@ -89,6 +89,13 @@ def test_the_report_stands_alone_and_says_that_nobody_was_there(
     assert "@media print" in page
 
 
+def test_the_report_says_which_walks_were_captured_and_which_were_modelled(
+    analysed: tuple[Path, Path, AnalysisOutcome],
+) -> None:
+    report = (analysed[1] / "report.html").read_text(encoding="utf-8")
+    assert "F1, M1, M2: modelled; F2: 4 cycles captured, 21 modelled" in report
+
+
 def test_real_participants_are_not_called_simulated(tmp_path: Path) -> None:
     write_study(tmp_path / "s", 5, simulated=False)
     outcome = analyse(tmp_path / "s", tmp_path / "out")
