@@ -11,6 +11,7 @@ import ctypes
 import ctypes.util
 import json
 import os
+import signal
 import sys
 import time
 from collections.abc import Sequence
@@ -40,15 +41,21 @@ def inject(steps: Sequence[Step]) -> list[float]:
         raise OSError("there is no X server to inject keys into")
     codes = {keysym: x11.XKeysymToKeycode(display, keysym) for keysym, _, _ in steps}
     times, at = [], time.perf_counter() + 0.2
-    for keysym, down, later in steps:
-        at += later
-        time.sleep(max(at - time.perf_counter() - SPIN, 0.0))
-        while (now := time.perf_counter()) < at:
-            pass
-        tests.XTestFakeKeyEvent(display, codes[keysym], int(down), 0)
-        x11.XFlush(display)
-        times.append(now)
-    x11.XCloseDisplay(display)
+    held: set[int] = set()
+    try:
+        for keysym, down, later in steps:
+            at += later
+            time.sleep(max(at - time.perf_counter() - SPIN, 0.0))
+            while (now := time.perf_counter()) < at:
+                pass
+            tests.XTestFakeKeyEvent(display, codes[keysym], int(down), 0)
+            x11.XFlush(display)
+            times.append(now)
+            (held.add if down else held.discard)(codes[keysym])
+    finally:  # a key that stayed down would be down for every program that comes after
+        for code in held:
+            tests.XTestFakeKeyEvent(display, code, 0, 0)
+        x11.XCloseDisplay(display)
     return times
 
 
@@ -63,7 +70,7 @@ class Injector:
 
     def __exit__(self, *_: object) -> None:
         if self._process.poll() is None:
-            self._process.kill()
+            self._process.terminate()  # it lets go of what it holds
         self._process.communicate()
 
     def begin(self, steps: Sequence[Step]) -> None:
@@ -84,4 +91,5 @@ class Injector:
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     print(json.dumps(inject(json.loads(sys.stdin.readline()))))

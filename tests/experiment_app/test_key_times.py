@@ -74,6 +74,21 @@ def test_holding_a_key_past_its_repeats_is_one_press_and_one_release_as_long_as_
     assert keys[1].time - keys[0].time == pytest.approx(times[1] - times[0], abs=0.1)
 
 
+def test_an_injector_that_is_ended_early_leaves_no_key_down():
+    with small() as window:
+        for _ in range(3):
+            frame(window)
+        events: list[Event] = []
+        with Injector() as injector:
+            injector.begin([(KEYSYM, True, 0.1), (KEYSYM, False, 60.0)])
+            until = time.monotonic() + 20.0
+            while not any(isinstance(event, KeyDown) for event in events) and time.monotonic() < until:
+                events += frame(window)
+        for _ in range(10):
+            events += frame(window)
+    assert [type(event) for event in events] == [KeyDown, KeyUp]
+
+
 def test_losing_the_focus_says_so_and_releases_what_is_held():
     with small() as window, Injector() as injector:
         for _ in range(3):
