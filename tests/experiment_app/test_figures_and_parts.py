@@ -29,23 +29,6 @@ Draw = Callable[[Scene], NDArray[np.uint8]]
 
 
 @pytest.fixture(scope="module")
-def context() -> Iterator[moderngl.Context]:
-    try:
-        made = moderngl.create_context(standalone=True, backend="egl", require=330)
-    except Exception as error:  # glcontext raises bare Exceptions
-        pytest.skip(f"no OpenGL 3.3 through EGL on this machine: {error}")
-    yield made
-    made.release()
-
-
-@pytest.fixture(scope="module")
-def renderer(context: moderngl.Context) -> Iterator[Renderer]:
-    made = Renderer(context, SIZE, 1.0, 4)
-    yield made
-    made.release()
-
-
-@pytest.fixture(scope="module")
 def draw(context: moderngl.Context, renderer: Renderer) -> Iterator[Draw]:
     target = context.simple_framebuffer(SIZE)
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import moderngl
 import numpy as np
 import pytest
@@ -13,16 +11,6 @@ from experiment_app.render.picture import Picture, most_samples
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Camera, Line, Marks, Page, Scene, Walker
 from experiment_app.walkers import drawn_walkers
-
-
-@pytest.fixture(scope="module")
-def context() -> Iterator[moderngl.Context]:
-    try:
-        made = moderngl.create_context(standalone=True, backend="egl", require=330)
-    except Exception as error:  # glcontext raises bare Exceptions
-        pytest.skip(f"no OpenGL 3.3 through EGL on this machine: {error}")
-    yield made
-    made.release()
 
 
 def linear(codes: NDArray[np.uint8]) -> NDArray[np.float64]:

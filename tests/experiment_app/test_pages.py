@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
-import moderngl
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -18,16 +16,6 @@ SIZE = (640, 360)
 WALKER = Walker("F1", 1.0, 100.0, 0.0)
 TEXT = Page((Line("Your task", "title"), Line("Hold ← or →.")), hint="Press Enter.")
 PAUSE = Page((Line("Pause", "title"),), (Row("", (Box("go", "Resume", "button", focused=True),)),), over_scene=True)
-
-
-@pytest.fixture(scope="module")
-def context() -> Iterator[moderngl.Context]:
-    try:
-        context = moderngl.create_context(standalone=True, require=330, backend="egl")
-    except Exception as error:  # glcontext raises bare Exceptions
-        pytest.skip(f"no OpenGL 3.3 without a display: {error}")
-    yield context
-    context.release()
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import moderngl
@@ -13,38 +12,13 @@ from numpy.typing import NDArray
 from experiment_app.render.renderer import Renderer
 from experiment_app.render.viewports import divide
 from experiment_app.scene import Camera, Ground, Line, Marks, Page, Scene, Walker
-from experiment_app.walkers import drawn_walkers, measured_gait
+from experiment_app.walkers import measured_gait
+from tests.experiment_app.drawing import picture
 
 SIZE = (480, 270)
 WALKER = Walker("F1", 1.2, 105.0, 0.3, distance=4.7)
 CLOSE = Camera("three_quarter", 4.5, 1.2, 30.0)
 Pixels = NDArray[np.uint8]
-
-
-@pytest.fixture(scope="module")
-def context() -> Iterator[moderngl.Context]:
-    try:
-        made = moderngl.create_context(standalone=True, backend="egl", require=330)
-    except Exception as error:  # glcontext raises bare Exceptions
-        pytest.skip(f"no OpenGL 3.3 through EGL on this machine: {error}")
-    yield made
-    made.release()
-
-
-@pytest.fixture(scope="module")
-def renderer(context: moderngl.Context) -> Iterator[Renderer]:
-    made = Renderer(context, SIZE, 1.0, 4)
-    yield made
-    made.release()
-
-
-def picture(context: moderngl.Context, renderer: Renderer, scene: Scene, size: tuple[int, int] = SIZE) -> Pixels:
-    renderer.resize(size, 1.0)
-    target = context.simple_framebuffer(size)
-    renderer.draw(scene, drawn_walkers(scene), target)
-    pixels = renderer.read_pixels(target)
-    target.release()
-    return pixels
 
 
 def halves(pixels: Pixels) -> tuple[Pixels, Pixels, Pixels]:
@@ -85,7 +59,7 @@ def test_equal_scenes_are_equal_to_the_pixel_on_both_sides(
 def test_each_half_is_what_a_picture_of_that_size_is(context: moderngl.Context, renderer: Renderer) -> None:
     first = Scene((WALKER,), CLOSE)
     second = Scene((replace(WALKER, actor="M1", phase=0.8),), Camera("side", 4.0), "treadmill")
-    left, right, strip = halves(picture(context, renderer, replace(first, beside=second)))
+    left, right, strip = halves(picture(context, renderer, replace(first, beside=second), SIZE))
     alone = left.shape[1], left.shape[0]
     assert np.array_equal(left, picture(context, renderer, first, alone))
     assert np.array_equal(right, picture(context, renderer, second, alone))
@@ -96,24 +70,24 @@ def test_the_viewers_angle_counts_in_both_halves(context: moderngl.Context, rend
     light = Scene((replace(WALKER, body="point_light"),), CLOSE, "plain", marks=Marks(dot_size=0.8))
     for angle in (20.0, 40.0):
         pair = replace(light, beside=replace(light, screen_angle=5.0), screen_angle=angle)
-        left, right, _ = halves(picture(context, renderer, pair))
+        left, right, _ = halves(picture(context, renderer, pair, SIZE))
         assert np.array_equal(left, right)
 
 
 def test_a_page_and_a_caption_lie_over_both_halves(context: moderngl.Context, renderer: Renderer) -> None:
     pair = Scene((WALKER,), CLOSE, beside=Scene((WALKER,), CLOSE))
-    bare = picture(context, renderer, pair).astype(int)
+    bare = picture(context, renderer, pair, SIZE).astype(int)
     for changed in (
         replace(pair, page=Page((Line("Paused", "title"),), over_scene=True)),
         replace(pair, caption="Which of the two walks looks more natural?"),
     ):
-        different = (np.abs(picture(context, renderer, changed) - bare).max(axis=2) > 0).any(axis=0)
+        different = (np.abs(picture(context, renderer, changed, SIZE) - bare).max(axis=2) > 0).any(axis=0)
         assert different[: SIZE[0] // 2].any()
         assert different[SIZE[0] // 2 :].any()
 
 
 def test_a_half_may_be_empty(context: moderngl.Context, renderer: Renderer) -> None:
-    left, right, strip = halves(picture(context, renderer, Scene(beside=Scene((WALKER,), CLOSE))))
+    left, right, strip = halves(picture(context, renderer, Scene(beside=Scene((WALKER,), CLOSE)), SIZE))
     assert len(np.unique(left.reshape(-1, 3), axis=0)) == 1
     assert np.array_equal(left[0, 0], strip[0, 0])
     assert right.std() > 5.0
@@ -122,15 +96,15 @@ def test_a_half_may_be_empty(context: moderngl.Context, renderer: Renderer) -> N
 def test_marks_look_the_same_after_a_page_was_shown(context: moderngl.Context, renderer: Renderer) -> None:
     """A dot is round again after text, which is blended in another way."""
     light = Scene((replace(WALKER, body="point_light"),), CLOSE, "plain", marks=Marks(dot_size=1.0))
-    before = picture(context, renderer, light)
-    picture(context, renderer, replace(light, caption="A caption"))
-    assert np.array_equal(before, picture(context, renderer, light))
+    before = picture(context, renderer, light, SIZE)
+    picture(context, renderer, replace(light, caption="A caption"), SIZE)
+    assert np.array_equal(before, picture(context, renderer, light, SIZE))
 
 
 def test_the_part_map_knows_both_halves(context: moderngl.Context, renderer: Renderer) -> None:
     alone = Scene((WALKER,), CLOSE)
     pair = replace(alone, beside=Scene((replace(WALKER, phase=0.8),), CLOSE))
-    picture(context, renderer, pair)
+    picture(context, renderer, pair, SIZE)
     parts = renderer.draw_parts()
     assert parts is not None
     half = divide(SIZE)[0][2:]
@@ -147,8 +121,8 @@ def test_the_part_map_knows_both_halves(context: moderngl.Context, renderer: Ren
 
 
 def test_a_page_leaves_nothing_in_the_part_map(context: moderngl.Context, renderer: Renderer) -> None:
-    picture(context, renderer, Scene((WALKER,), CLOSE))
-    picture(context, renderer, Scene(page=Page((Line("A page"),))))
+    picture(context, renderer, Scene((WALKER,), CLOSE), SIZE)
+    picture(context, renderer, Scene(page=Page((Line("A page"),))), SIZE)
     parts = renderer.draw_parts()
     assert parts is not None
     assert not parts.codes.any()

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import moderngl
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from experiment_app.render.cameras import place_camera
 from experiment_app.render.renderer import Renderer
@@ -16,46 +14,21 @@ from experiment_app.render.treadmill_pass import corners
 from experiment_app.scene import Camera, Ground, Scene, View, Walker
 from experiment_app.walkers import cast, drawn_walkers
 from stimuli.skinning import skin
+from tests.experiment_app.drawing import picture
 
 SIZE = (320, 180)
 WALKER = Walker("F1", 1.2, 105.0, 0.3, distance=4.7)
 VIEWS: tuple[View, ...] = ("three_quarter", "side", "front", "legs")
 
 
-@pytest.fixture(scope="module")
-def context() -> Iterator[moderngl.Context]:
-    try:
-        made = moderngl.create_context(standalone=True, backend="egl", require=330)
-    except Exception as error:  # glcontext raises bare Exceptions
-        pytest.skip(f"no OpenGL 3.3 through EGL on this machine: {error}")
-    yield made
-    made.release()
-
-
-@pytest.fixture(scope="module")
-def renderer(context: moderngl.Context) -> Iterator[Renderer]:
-    made = Renderer(context, SIZE, 1.0, 4)
-    yield made
-    made.release()
-
-
-def picture(context: moderngl.Context, renderer: Renderer, scene: Scene) -> NDArray[np.uint8]:
-    renderer.resize(SIZE, 1.0)
-    target = context.simple_framebuffer(SIZE)
-    renderer.draw(scene, drawn_walkers(scene), target)
-    pixels = renderer.read_pixels(target)
-    target.release()
-    return pixels
-
-
 @pytest.mark.parametrize("ground", ["open_ground", "treadmill"])
 def test_equal_scenes_give_equal_bytes(context: moderngl.Context, renderer: Renderer, ground: Ground) -> None:
     scene = Scene((WALKER,), ground=ground)
-    first = picture(context, renderer, scene)
-    picture(context, renderer, Scene((replace(WALKER, phase=0.7),), Camera("side")))
-    again = picture(context, renderer, scene)
+    first = picture(context, renderer, scene, SIZE)
+    picture(context, renderer, Scene((replace(WALKER, phase=0.7),), Camera("side")), SIZE)
+    again = picture(context, renderer, scene, SIZE)
     other = Renderer(context, SIZE, 1.0, 4)
-    fresh = picture(context, other, scene)
+    fresh = picture(context, other, scene, SIZE)
     other.release()
     assert np.array_equal(first, again)
     assert np.array_equal(first, fresh)
@@ -64,11 +37,11 @@ def test_equal_scenes_give_equal_bytes(context: moderngl.Context, renderer: Rend
 def test_a_body_is_uploaded_once(context: moderngl.Context) -> None:
     renderer = Renderer(context, SIZE, 1.0, 1)
     for phase in (0.0, 0.2, 0.4):
-        picture(context, renderer, Scene((replace(WALKER, phase=phase),)))
+        picture(context, renderer, Scene((replace(WALKER, phase=phase),)), SIZE)
     assert renderer.uploads == 1
-    picture(context, renderer, Scene((WALKER, replace(WALKER, place=(0.8, 0.0), phase=0.1))))
+    picture(context, renderer, Scene((WALKER, replace(WALKER, place=(0.8, 0.0), phase=0.1))), SIZE)
     assert renderer.uploads == 1
-    picture(context, renderer, Scene((replace(WALKER, actor="M1"),)))
+    picture(context, renderer, Scene((replace(WALKER, actor="M1"),)), SIZE)
     assert renderer.uploads == 2
     renderer.release()
 
@@ -76,7 +49,7 @@ def test_a_body_is_uploaded_once(context: moderngl.Context) -> None:
 def test_samples_are_brought_down_to_what_the_driver_has(context: moderngl.Context) -> None:
     renderer = Renderer(context, SIZE, 1.0, 64)
     assert 1 <= renderer.samples <= context.max_samples
-    assert picture(context, renderer, Scene((WALKER,))).std() > 5.0
+    assert picture(context, renderer, Scene((WALKER,)), SIZE).std() > 5.0
     renderer.release()
 
 
@@ -87,7 +60,10 @@ def test_many_walkers_are_drawn_at_their_places(context: moderngl.Context, rende
     walkers = [WALKER] + [
         replace(WALKER, actor=("F1", "M1")[i % 2], place=(0.6 * (i - 5.5) + 0.1, -0.8), phase=i / 12) for i in range(11)
     ]
-    alone, together = picture(context, renderer, empty_side), picture(context, renderer, Scene(tuple(walkers), camera))
+    alone, together = (
+        picture(context, renderer, empty_side, SIZE),
+        picture(context, renderer, Scene(tuple(walkers), camera), SIZE),
+    )
     changed = np.abs(alone.astype(int) - together).max(axis=2) > 40
     columns = changed.any(axis=0).nonzero()[0]
     assert changed.sum() > 1500
@@ -164,8 +140,8 @@ def test_the_legs_view_ends_below_the_hips() -> None:
 
 def test_the_camera_keeps_pace_with_the_walker(context: moderngl.Context, renderer: Renderer) -> None:
     """The walker stays at the same place of the picture while the ground goes past."""
-    here = picture(context, renderer, Scene((WALKER,))).astype(int)
-    there = picture(context, renderer, Scene((replace(WALKER, distance=5.4),))).astype(int)
+    here = picture(context, renderer, Scene((WALKER,)), SIZE).astype(int)
+    there = picture(context, renderer, Scene((replace(WALKER, distance=5.4),)), SIZE).astype(int)
     changed = np.abs(here - there).max(axis=2)
     torso = np.s_[60:85, 155:165]
     assert changed[torso].max() <= 2
@@ -173,8 +149,8 @@ def test_the_camera_keeps_pace_with_the_walker(context: moderngl.Context, render
 
 
 def test_the_belt_runs_while_the_walker_stays(context: moderngl.Context, renderer: Renderer) -> None:
-    here = picture(context, renderer, Scene((WALKER,), ground="treadmill")).astype(int)
-    there = picture(context, renderer, Scene((replace(WALKER, distance=4.8),), ground="treadmill")).astype(int)
+    here = picture(context, renderer, Scene((WALKER,), ground="treadmill"), SIZE).astype(int)
+    there = picture(context, renderer, Scene((replace(WALKER, distance=4.8),), ground="treadmill"), SIZE).astype(int)
     changed = np.abs(here - there).max(axis=2) > 4
     rows = changed.any(axis=1).nonzero()[0]
     assert 20 < changed.sum() < 2000
@@ -187,7 +163,7 @@ def test_the_stance_sole_darkens_the_ground_under_it(
 ) -> None:
     """Beside the standing foot the ground is darker than where nothing is near, and darker still in the shadow."""
     scene = Scene((replace(WALKER, phase=0.25),), Camera("legs"), ground)
-    with_walker = picture(context, renderer, scene).astype(float).sum(axis=2)
+    with_walker = picture(context, renderer, scene, SIZE).astype(float).sum(axis=2)
     (drawn,) = drawn_walkers(scene)
     target = context.simple_framebuffer(SIZE)
     hidden = replace(drawn, matrices=np.zeros_like(drawn.matrices))  # the walker, shrunk to a point

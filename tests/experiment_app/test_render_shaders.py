@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import moderngl
@@ -30,16 +29,6 @@ void main() {
     turned = vec3(dot(x_row.xyz, normal), dot(y_row.xyz, normal), dot(z_row.xyz, normal));
 }
 """
-
-
-@pytest.fixture(scope="module")
-def context() -> Iterator[moderngl.Context]:
-    try:
-        made = moderngl.create_context(standalone=True, backend="egl", require=330)
-    except Exception as error:  # glcontext raises bare Exceptions
-        pytest.skip(f"no OpenGL 3.3 through EGL on this machine: {error}")
-    yield made
-    made.release()
 
 
 def test_skinning_on_the_gpu_is_skinning_in_numpy(context: moderngl.Context) -> None:

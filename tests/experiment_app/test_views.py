@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import moderngl
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from experiment_app.film import condition_of, walking
 from experiment_app.render.cameras import AIM, HEADINGS, place_camera
@@ -16,41 +14,17 @@ from experiment_app.render.renderer import Renderer
 from experiment_app.render.street_model import HOUSES_AT, KERB_HEIGHT, STRETCH, street_side
 from experiment_app.scene import STREET_HALF_WIDTH, Camera, Ground, Scene, View, Walker
 from experiment_app.staging import stage, staged
-from experiment_app.walkers import cast, drawn_walkers, measured_gait
+from experiment_app.walkers import cast, measured_gait
 from protocols.events import Shown
 from protocols.plan import TrialStep, make_plan
 from protocols.session import begin, handle
 from protocols.study_file import parse_study
+from tests.experiment_app.drawing import picture
 from tests.protocols.studies import changed
 
 SIZE = (320, 180)
 WALKER = Walker("F1", 1.2, 105.0, 0.3, distance=4.7)
 NOWHERE = (0.0, 0.0, 0.0)
-
-
-@pytest.fixture(scope="module")
-def context() -> Iterator[moderngl.Context]:
-    try:
-        made = moderngl.create_context(standalone=True, backend="egl", require=330)
-    except Exception as error:  # glcontext raises bare Exceptions
-        pytest.skip(f"no OpenGL 3.3 through EGL on this machine: {error}")
-    yield made
-    made.release()
-
-
-@pytest.fixture(scope="module")
-def renderer(context: moderngl.Context) -> Iterator[Renderer]:
-    made = Renderer(context, SIZE, 1.0, 4)
-    yield made
-    made.release()
-
-
-def picture(context: moderngl.Context, renderer: Renderer, scene: Scene) -> NDArray[np.uint8]:
-    target = context.simple_framebuffer(SIZE)
-    renderer.draw(scene, drawn_walkers(scene), target)
-    pixels = renderer.read_pixels(target)
-    target.release()
-    return pixels
 
 
 def seen(camera: Camera, point: tuple[float, float, float], walker: tuple[float, float, float] = NOWHERE) -> np.ndarray:
@@ -125,13 +99,13 @@ def test_the_study_files_look_reaches_the_scene() -> None:
 
 def test_the_street_is_there_when_nobody_is(context: moderngl.Context, renderer: Renderer) -> None:
     empty = Scene((), Camera("first_person", height=1.6, field_of_view=50.0), "street")
-    alone = picture(context, renderer, empty)
+    alone = picture(context, renderer, empty, SIZE)
     assert alone.std() > 15.0
-    assert np.array_equal(alone, picture(context, renderer, empty))
+    assert np.array_equal(alone, picture(context, renderer, empty, SIZE))
     parts = renderer.draw_parts()
     assert parts is not None
     assert not parts.codes.any()
-    with_walker = picture(context, renderer, replace(empty, walkers=(replace(WALKER, place=(0.0, -12.0)),)))
+    with_walker = picture(context, renderer, replace(empty, walkers=(replace(WALKER, place=(0.0, -12.0)),)), SIZE)
     changed_pixels = np.abs(alone.astype(int) - with_walker).max(axis=2) > 8
     assert 100 < changed_pixels.sum() < 0.1 * changed_pixels.size
 
@@ -141,7 +115,7 @@ def test_the_walker_looks_the_same_on_the_street_as_on_open_ground(
 ) -> None:
     """The houses cast no shadow, so every walker of a crowd has the same light."""
     grounds: tuple[Ground, Ground] = ("open_ground", "street")
-    on = [picture(context, renderer, Scene((WALKER,), ground=ground)).astype(int) for ground in grounds]
+    on = [picture(context, renderer, Scene((WALKER,), ground=ground), SIZE).astype(int) for ground in grounds]
     parts = renderer.draw_parts()
     assert parts is not None
     inside = parts.codes[..., 0] > 0
@@ -153,8 +127,10 @@ def test_the_walker_looks_the_same_on_the_street_as_on_open_ground(
 
 def test_the_street_passes_by(context: moderngl.Context, renderer: Renderer) -> None:
     """Paving and houses move past a walker that the camera follows."""
-    here = picture(context, renderer, Scene((WALKER,), Camera("side"), "street")).astype(int)
-    there = picture(context, renderer, Scene((replace(WALKER, distance=6.1),), Camera("side"), "street")).astype(int)
+    here = picture(context, renderer, Scene((WALKER,), Camera("side"), "street"), SIZE).astype(int)
+    there = picture(context, renderer, Scene((replace(WALKER, distance=6.1),), Camera("side"), "street"), SIZE).astype(
+        int
+    )
     different = np.abs(here - there).max(axis=2) > 4
     assert different[:80, :110].mean() > 0.04  # houses
     assert different[130:, :110].mean() > 0.08  # paving
