@@ -16,8 +16,9 @@ GIRTHS: dict[str, dict[str, float]] = {
 """Build -> joint -> factor across its bone, as `with_girths` takes them."""
 
 AVERAGE = {"F": (67.8, 1.628), "M": (85.5, 1.756)}
-"""Sex -> mean weight (kg) and stature (m) in ANSUR II (Gordon et al. 2014, Natick/TR-15/007), whose mean breadths,
-depths and girths the shipped bodies have."""
+"""Sex -> mean weight (kg) and stature (m) of people as broad as the shipped bodies, whose measures are those of ANSUR
+II (Gordon et al. 2014, Natick/TR-15/007). Quoted from memory, like the bodies' own measures; the survey's tables
+were not at hand to check them."""
 
 
 def girths_of(sex: str, weight: float, height: float) -> dict[str, float]:

@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from stimuli.actors import load_actor
 from stimuli.bodies import (
+    SLIMMEST,
     BodyError,
     body_for,
     body_names,
@@ -22,7 +23,7 @@ from stimuli.bodies import (
     with_girths,
 )
 from stimuli.body_files.baked import read_baked
-from stimuli.builds import AVERAGE
+from stimuli.builds import AVERAGE, girths_of
 from stimuli.measure import poses
 from stimuli.skeleton import JOINTS, PARENTS
 from stimuli.skinning import skin
@@ -325,4 +326,7 @@ def test_a_body_of_one_height_gets_wider_with_the_root_of_its_weight(share, wide
 
 
 def test_bodies_are_never_thinner_than_they_can_be_made():
-    in_the_build_of(load_body("woman"), "F", 5.0, 1.7)
+    body = load_body("woman")
+    there = in_the_build_of(body, "F", 5.0, 1.7)  # kg; by weight alone the girth would be 0.25
+    thinnest = with_girths(body, dict.fromkeys(girths_of("F", 5.0, 1.7), SLIMMEST))
+    assert np.allclose(surface(there, "trousers").positions, surface(thinnest, "trousers").positions, atol=1e-12)
