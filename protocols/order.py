@@ -8,9 +8,6 @@ from pydantic import BeforeValidator, Field
 
 from protocols.parts import Name, Number, Part, Text
 
-FIXED_ORDERS = ("random", "blocked", "sequential")
-"""Orders that a single word says."""
-
 
 def _as_list(value: Any) -> Any:
     return [value] if isinstance(value, str) else value

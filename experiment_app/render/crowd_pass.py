@@ -67,14 +67,6 @@ class CrowdPass:
         for number, instances in enumerate((self._seen, self._casting)):
             self._tables[number] = _written(self._context, self._tables[number], instances.table[None])
 
-    @property
-    def drawn_levels(self) -> dict[int, int]:
-        """How many walkers were drawn at each level of detail; near a threshold one counts for both."""
-        counts: dict[int, int] = {}
-        for batch in self._seen.batches:
-            counts[batch.level] = counts.get(batch.level, 0) + batch.count
-        return counts
-
     def draw_shadow(self, sunlight: Sunlight) -> None:
         """Draws the depth of everybody into the bound shadow map."""
         kinds: dict[int, list[Batch]] = defaultdict(list)

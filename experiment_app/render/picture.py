@@ -67,10 +67,6 @@ class Picture:
         self._drawn.viewport = (0, 0, *self.size)
         self._drawn.clear()
 
-    def keep_depth(self, kept: bool) -> None:
-        """Whether drawing leaves the depths as they are."""
-        self._drawn.depth_mask = not kept
-
     def show(self, target: moderngl.Framebuffer, corner: tuple[int, int] = (0, 0)) -> None:
         """Resolves the samples in linear light and writes sRGB codes into the target, left bound.
 
