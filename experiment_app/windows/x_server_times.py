@@ -124,7 +124,7 @@ def measured_clock(x11: Any) -> tuple[float, float]:
             x11.XNextEvent(display, ctypes.byref(event))
             answered = time.perf_counter()
             stamp = unwrapped(event.property.time, answered)
-            lowest, highest = max(lowest, stamp - answered), min(highest, stamp + 0.001 - asked)
+            lowest, highest = max(lowest, stamp - answered), min(highest, stamp + STEP - asked)
         return lowest, highest
     finally:
         x11.XCloseDisplay(display)

@@ -11,16 +11,21 @@ KEY_PRESS, KEY_RELEASE = 2, 3
 PROPERTY_CHANGE_MASK = 1 << 22
 QUEUED_AFTER_READING = 1
 
+EVERY_EVENT = (
+    ("type", ctypes.c_int),
+    ("serial", ctypes.c_ulong),
+    ("send_event", ctypes.c_int),
+    ("display", ctypes.c_void_p),
+    ("window", ctypes.c_ulong),
+)
+"""XAnyEvent of Xlib.h: what every event begins with."""
+
 
 class KeyEvent(ctypes.Structure):
     """XKeyEvent of Xlib.h."""
 
     _fields_ = (
-        ("type", ctypes.c_int),
-        ("serial", ctypes.c_ulong),
-        ("send_event", ctypes.c_int),
-        ("display", ctypes.c_void_p),
-        ("window", ctypes.c_ulong),
+        *EVERY_EVENT,
         ("root", ctypes.c_ulong),
         ("subwindow", ctypes.c_ulong),
         ("time", ctypes.c_ulong),
@@ -38,11 +43,7 @@ class PropertyEvent(ctypes.Structure):
     """XPropertyEvent of Xlib.h."""
 
     _fields_ = (
-        ("type", ctypes.c_int),
-        ("serial", ctypes.c_ulong),
-        ("send_event", ctypes.c_int),
-        ("display", ctypes.c_void_p),
-        ("window", ctypes.c_ulong),
+        *EVERY_EVENT,
         ("atom", ctypes.c_ulong),
         ("time", ctypes.c_ulong),
         ("state", ctypes.c_int),
