@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from statistics import median, pstdev, quantiles
+from statistics import median, pstdev
 from typing import Any, Literal
 
-from experiment_app.timing import Timing
+from experiment_app.timing import Timing, percentile_90
 
 MANY_LATE, SOME_LATE = 0.01, 0.001
 """Shares of late frames above which a run is not publishable, or only with caveats."""
@@ -75,10 +75,10 @@ def _caveats(timing: Timing) -> list[str]:
         reasons.append("Shown in a window, not full screen: the desktop may hold every frame back by a refresh.")
     if about.get("compositor", "none") not in ("none", ""):
         reasons.append(f"A compositor ({about['compositor']}) was running: it may hold every frame back by a refresh.")
-    if timing.uncertainties and _p90(timing.uncertainties) > COARSE:
+    if timing.uncertainties and percentile_90(timing.uncertainties) > COARSE:
         reasons.append(
-            f"Key times are uncertain by {_p90(timing.uncertainties):.1f} ms (90th percentile): good for adjustment, "
-            "coarse for response times."
+            f"Key times are uncertain by {percentile_90(timing.uncertainties):.1f} ms (90th percentile): good for "
+            "adjustment, coarse for response times."
         )
     if timing.keys and (timing.keys["lost"] or timing.keys["doubled"]):
         reasons.append(f"Of {timing.keys['presses']} injected keys {timing.keys['lost']} were lost.")
@@ -169,7 +169,7 @@ def _keys(timing: Timing) -> str:
     if timing.sources:
         counts = ", ".join(f"{count} from {source}" for source, count in sorted(timing.sources.items()))
         said.append(f"{counts}; uncertainty {median(timing.uncertainties):.2f} ms (median), "
-                    f"{_p90(timing.uncertainties):.2f} ms (90th percentile)")  # fmt: skip
+                    f"{percentile_90(timing.uncertainties):.2f} ms (90th percentile)")  # fmt: skip
     if timing.keys:
         keys = timing.keys
         said.append(
@@ -239,8 +239,4 @@ def histogram(intervals: Sequence[float], bins: int = 24) -> str:
 
 
 def _spread(what: str, ms: Sequence[float]) -> str:
-    return f"{what}: median {median(ms):.2f} ms, 90th percentile {_p90(ms):.2f} ms"
-
-
-def _p90(values: Sequence[float]) -> float:
-    return quantiles(values, n=10, method="inclusive")[-1] if len(values) > 1 else values[0]
+    return f"{what}: median {median(ms):.2f} ms, 90th percentile {percentile_90(ms):.2f} ms"

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from random import Random
-from statistics import median, quantiles
+from statistics import median
 from typing import TYPE_CHECKING, cast
 
 from experiment_app.key_injector import Injector, Step
+from experiment_app.timing import percentile_90
 from protocols.events import KeyDown, KeyUp
 from protocols.session import Session
 
@@ -55,11 +56,6 @@ class KeyErrors:
             "median_ms": round(median(self.presses), 3) if self.presses else None,
             "p90_ms": round(percentile_90([abs(error) for error in self.presses]), 3) if self.presses else None,
         }
-
-
-def percentile_90(values: Sequence[float]) -> float:
-    """The value below which nine tenths lie, interpolated."""
-    return quantiles(values, n=10, method="inclusive")[-1] if len(values) > 1 else values[0]
 
 
 def measure_keys(window: DesktopWindow, show: Callable[[], object], count: int) -> KeyErrors:

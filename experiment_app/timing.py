@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
+from statistics import quantiles
 from typing import Any
 
 SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "gdi generic", "basic render")
@@ -97,3 +98,8 @@ def _intervals(log: Mapping[str, Any]) -> Iterable[float]:
     for number, (earlier, later) in enumerate(pairwise(log["flips"]), start=1):
         if number not in begins:
             yield later - earlier
+
+
+def percentile_90(values: Sequence[float]) -> float:
+    """The value below which nine tenths lie, interpolated."""
+    return quantiles(values, n=10, method="inclusive")[-1] if len(values) > 1 else values[0]
