@@ -16,6 +16,11 @@ SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "gdi generic", "b
 """Words in an OpenGL renderer's name that mean the processor draws."""
 
 
+def is_software(renderer: str) -> bool:
+    """Whether an OpenGL renderer of this name draws with the processor."""
+    return any(word in renderer.lower() for word in SOFTWARE)
+
+
 @dataclass(frozen=True)
 class Timing:
     """How frames and keys were timed.
@@ -61,8 +66,7 @@ class Timing:
     @property
     def drawn_by_processor(self) -> bool:
         """Whether there is no graphics card at work."""
-        name = str(self.about.get("gl_renderer", "")).lower()
-        return any(word in name for word in SOFTWARE)
+        return is_software(str(self.about.get("gl_renderer", "")))
 
 
 def timing_of_run(lines: Sequence[Mapping[str, Any]]) -> Timing:

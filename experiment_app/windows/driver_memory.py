@@ -7,7 +7,7 @@ import sys
 
 import moderngl
 
-SOFTWARE = ("llvmpipe", "softpipe", "swrast")
+from experiment_app.timing import is_software
 
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3  # of mallopt(3)
 KEPT = 1 << 28  # bytes at the heap's top that are not handed back
@@ -20,7 +20,7 @@ def keep_freed_memory(context: moderngl.Context) -> None:
     Such a driver takes megabytes for the vertices of each draw call and frees them after it. By default glibc may hand
     them back to the system every time, and a crowd of 1000 then pays some 30 ms per frame to get them again.
     """
-    if not sys.platform.startswith("linux") or not context.info["GL_RENDERER"].lower().startswith(SOFTWARE):
+    if not sys.platform.startswith("linux") or not is_software(context.info["GL_RENDERER"]):
         return
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt is not None:
