@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from protocols.assignment import counts, group_of
 from protocols.design import default_seed, make_trials, square_parts, square_row, square_rows
-from protocols.order import AdaptiveOrder, ListOrder
+from protocols.order import AdaptiveOrder
 from protocols.plan import QuestionsStep, TrialStep, make_plan
 from protocols.study import Level, Study
 
@@ -45,7 +45,7 @@ def balance(study: Study) -> list[str]:
     if study.task.kind == "adjustment" and study.task.keys.counterbalanced:
         lines.append(f"  keys as in the file: {(planned + 1) // 2} participants; swapped: {planned // 2}")
     people = min(planned, COUNTED)
-    if not isinstance(study.order, AdaptiveOrder):
+    if not study.order.placed_factor:
         lines += _halves(study, people)
     return lines
 
@@ -55,8 +55,7 @@ def _named(levels: dict[str, Level] | dict[str, str]) -> str:
 
 
 def _square_lines(study: Study, planned: int) -> list[str]:
-    order = study.order
-    if not isinstance(order, ListOrder) or "square" not in order.kind:
+    if not study.order.is_square:
         return []
     rows, parts = square_rows(study), square_parts(study)
     each, more = divmod(planned, len(rows))
@@ -106,15 +105,14 @@ def what_participant_sees(study: Study, number: int, seed: int | None = None) ->
     lines = [f"What participant {number} will see ({whose})"]
     if group:
         lines.append(f"  group: {_named(group)}")
-    order = study.order
-    if isinstance(order, ListOrder) and "square" in order.kind:
+    if study.order.is_square:
         parts = square_parts(study)
         shown = " - ".join(_named(parts[part]) for part in square_row(study, number))
         lines.append(f"  row {(number - 1) % len(square_rows(study)) + 1} of the square: {shown}")
     lines.append(f"  keys: {', '.join(f'{name} {key}' for name, key in study.task.keys_for(number).items())}")
-    if isinstance(order, AdaptiveOrder):
-        lines.append(f"  {order.of} is placed by the answers, so only the rest is known beforehand")
-    placed = order.of if isinstance(order, AdaptiveOrder) else ""
+    placed = study.order.placed_factor
+    if placed:
+        lines.append(f"  {placed} is placed by the answers, so only the rest is known beforehand")
     blocks = {step.trial.block for step in plan.steps if isinstance(step, TrialStep) and not step.trial.practice}
     block = 0
     for step in plan.steps:

@@ -14,7 +14,6 @@ from protocols.assignment import groups
 from protocols.consistency import inconsistencies, referred_factors, settings_of
 from protocols.design import conditions, make_trials, tracks
 from protocols.mistake import Mistake, Place
-from protocols.order import AdaptiveOrder
 from protocols.parts import Level
 from protocols.resuming import in_words
 from protocols.setting import leaves
@@ -154,7 +153,7 @@ def summary(file: StudyFile) -> list[str]:
 
 def _counted(study: Study, trials: int) -> str:
     """How many trials there are, and why."""
-    if isinstance(study.order, AdaptiveOrder):
+    if study.order.placed_factor:
         return f"{len(tracks(study))} tracks of {study.repetitions} trials = {trials} trials"
     return f"{_times(study.repetitions)} each = {trials} trials"
 
@@ -240,7 +239,7 @@ def _strip(study: Study) -> list[str]:
     lines = []
     name = max(10, *map(len, study.factors))
     wide = max(8, *(len(str(level)) for levels in study.factors.values() for level in levels))
-    placed = study.order.of if isinstance(study.order, AdaptiveOrder) else ""
+    placed = study.order.placed_factor
     for factor, levels in study.factors.items():
         for level in levels if factor != placed else ():
             at = Counter((t.number - 1) * bins // len(trials) for t in trials if t.levels[factor] == level)
@@ -259,7 +258,7 @@ def design_picture(file: StudyFile, path: Path) -> None:
 
     study = file.study
     people = min(study.participants.planned, 12)
-    placed = study.order.of if isinstance(study.order, AdaptiveOrder) else ""
+    placed = study.order.placed_factor
     factors = {name: levels for name, levels in study.factors.items() if name != placed} or study.factors
     orders = [make_trials(study, likely_seed(study, number), number) for number in range(1, people + 1)]
     figure, axes = plt.subplots(

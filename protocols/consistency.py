@@ -13,7 +13,6 @@ from typing import Any
 from protocols.assignment import groups
 from protocols.design import conditions
 from protocols.mistake import Mistake, Place, no_such
-from protocols.order import AdaptiveOrder
 from protocols.order_mistakes import order_mistakes
 from protocols.parts import Level
 from protocols.planned_analysis import analysis_mistakes
@@ -99,7 +98,7 @@ def _stimulus(study: Study) -> Iterator[Mistake]:
 
 
 def _levels(study: Study) -> Iterator[Mistake]:
-    placed = study.order.of if isinstance(study.order, AdaptiveOrder) else None
+    placed = study.order.placed_factor
     trials = study.repetitions * math.prod(len(levels) for name, levels in study.factors.items() if name != placed)
     if trials > MOST_TRIALS:
         yield Mistake(("repetitions",), f"the design has {trials} trials; at most {MOST_TRIALS} fit a run")

@@ -46,6 +46,16 @@ class ListOrder(Part):
     )
 
     @property
+    def placed_factor(self) -> str:
+        """None: every level is known beforehand."""
+        return ""
+
+    @property
+    def is_square(self) -> bool:
+        """True when the participant's row of a square decides."""
+        return self.kind in ("latin_square", "balanced_latin_square")
+
+    @property
     def limited(self) -> bool:
         """True when not every shuffled list will do."""
         return bool(self.at_most_in_a_row or self.at_least_apart or self.repeats_at_least_apart)
@@ -105,6 +115,16 @@ class AdaptiveOrder(Part):
         description="When a response counts as yes, as `chosen == faster`, `chosen == $original` or `rating >= 3`."
     )
     rule: Annotated[StaircaseRule | WeightedRule | QuestPlusRule, Field(discriminator="kind")]
+
+    @property
+    def placed_factor(self) -> str:
+        """The factor whose levels only the answers decide."""
+        return self.of
+
+    @property
+    def is_square(self) -> bool:
+        """False: there is no row."""
+        return False
 
 
 Order = Annotated[

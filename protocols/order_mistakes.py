@@ -27,10 +27,9 @@ def order_mistakes(study: Study) -> Iterator[Mistake]:
 
 
 def _list_order(study: Study, order: ListOrder) -> Iterator[Mistake]:
-    square = order.kind in ("latin_square", "balanced_latin_square")
-    if order.of is not None and not square:
+    if order.of is not None and not order.is_square:
         yield Mistake(("order", "of"), f"only squares have parts; remove it from an order of kind {order.kind}", True)
-    if order.limited and (order.kind == "sequential" or (square and order.of is None)):
+    if order.limited and (order.kind == "sequential" or (order.is_square and order.of is None)):
         message = (
             f"the order of kind {order.kind} is fixed, so no limit can be kept; take random or blocked, or squares of"
         )
@@ -45,7 +44,7 @@ def _list_order(study: Study, order: ListOrder) -> Iterator[Mistake]:
             if name not in study.factors:
                 yield Mistake(("order", field, name), no_such(name, study.factors, "factor"), on_key=True)
     names = order.of or list(study.factors)
-    if square and all(name in study.factors for name in names):
+    if order.is_square and all(name in study.factors for name in names):
         size = 1
         for name in names:
             size *= len(study.factors[name])
