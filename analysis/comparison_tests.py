@@ -8,7 +8,7 @@ import pandas as pd
 
 from analysis import apa
 from analysis.comparisons import pairwise
-from analysis.exclusions import matching
+from analysis.exclusions import selected
 from analysis.further_test import FurtherTest
 from analysis.plan import AnalysisPlan
 from analysis.student import t_tests
@@ -19,7 +19,7 @@ def comparison_tests(used: pd.DataFrame, plan: AnalysisPlan) -> FurtherTest:
     parts: list[pd.DataFrame] = []
     notes: list[str] = []
     for asked in plan.comparisons:
-        chosen = used if asked.where is None else used[matching(used, asked.where)]
+        chosen = selected(used, asked.where)
         named = [name for name in (asked.each, asked.factor) if name is not None]
         table = t_tests(
             chosen, plan.measure, "participant", each=asked.each, levels={name: plan.levels[name] for name in named},

@@ -10,7 +10,7 @@ from scipy import special
 
 from analysis.adjust import METHODS, bonferroni, holm
 from analysis.cells import Levels, cell_means, names_of
-from analysis.errors import AnalysisError
+from analysis.errors import AnalysisError, check_share
 from analysis.marginal_means import MarginalMeans, check_model, marginal_means, variance_and_df
 from analysis.studentized_range import critical_value, survival
 
@@ -43,6 +43,7 @@ def pairwise(
     between groups). A pair without variance has no t and no p; `attrs["notes"]` says so.
     """
     check_model(model)
+    check_share("level", level, 0.95)
     if adjust not in METHODS:
         raise AnalysisError(f"adjust must be one of {', '.join(METHODS)}, not {adjust!r}.")
     means = cell_means(data, dv, subject, within, between, levels)

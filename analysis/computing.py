@@ -14,7 +14,7 @@ from analysis.cells import CellMeans, cell_means
 from analysis.columns import numeric_label
 from analysis.comparisons import pairwise_of
 from analysis.errors import AnalysisError, AnalysisWarning, listed
-from analysis.exclusions import matching
+from analysis.exclusions import selected
 from analysis.further_tests import planned_tests
 from analysis.intervals import ordinary
 from analysis.journal import RecordedStudy
@@ -27,7 +27,7 @@ from analysis.results import ALPHA, PlannedResults
 from analysis.shapiro_wilk import normality_of_cells
 from analysis.student import COLUMNS as T_COLUMNS
 from analysis.student import t_tests
-from analysis.trials import used_trials
+from analysis.trials import exclusion_counts, used_trials
 
 POSTHOC_COLUMNS = (
     "effect", "a", "b", "estimate", "se", "df", "t", "p", "p_unadjusted", "ci_low", "ci_high", "d_av", "d_z",
@@ -53,9 +53,11 @@ def _compute(recorded: RecordedStudy, plan: AnalysisPlan, trials: pd.DataFrame) 
         )
         used = used.iloc[:0].assign(gaze_share=pd.Series(dtype=float), region=pd.Series(dtype=object))
     used = _known_groups(used, plan, said)
+    if len(trials) and (trials["excluded"] != "").all():
+        said.append(_all_excluded(trials, plan))
     cells, descriptives = describe(used, plan)
     means = None
-    if plan.within or plan.between:
+    if len(used) and (plan.within or plan.between):  # why nothing is used is said already
         means = _attempt(said, "The analysis of variance cannot be run", _cell_means, used, plan)
     table = pd.DataFrame(columns=list(ANOVA_COLUMNS))
     normal = pd.DataFrame(columns=["scope", "n", "mean", "sd", "w", "p"])
@@ -71,7 +73,8 @@ def _compute(recorded: RecordedStudy, plan: AnalysisPlan, trials: pd.DataFrame) 
         checks = pd.DataFrame(columns=["check", "where", "statistic", "df1", "df2", "p", "note"])
     posthoc = _posthoc(means, table, plan, notes)
     ttests = _t_tests(used, plan, said)
-    tested = [_attempt(said, f"{name} cannot be run", run, used) for name, run in planned_tests(plan)]
+    planned = planned_tests(plan) if len(used) else ()
+    tested = [_attempt(said, f"{name} cannot be run", run, used) for name, run in planned]
     if len(table) and any(":" in e for e in table.loc[table["p_gg"] < ALPHA, "effect"]):
         notes.append(
             "An interaction is significant: comparisons of a main effect inside it average over the "
@@ -92,6 +95,15 @@ def _attempt(said: list[str], what: str, function, *arguments):  # type: ignore[
         except AnalysisError as error:
             said.append(f"{what}: {error}")
             return None
+
+
+def _all_excluded(trials: pd.DataFrame, plan: AnalysisPlan) -> str:
+    counts = exclusion_counts(trials, plan)
+    each = [f"{row.trials} by {row.where!r} ({row.reason})" for row in counts[counts["trials"] > 0].itertuples()]
+    return (
+        f"All {len(trials)} trials are excluded, {listed(each)}, so nothing can be tested; correct the exclusions in "
+        "a copy of the study file, or record again."
+    )
 
 
 def _checks(used: pd.DataFrame, plan: AnalysisPlan) -> pd.DataFrame:
@@ -163,16 +175,17 @@ def _posthoc(means: CellMeans | None, table: pd.DataFrame, plan: AnalysisPlan, n
 
 def _t_tests(used: pd.DataFrame, plan: AnalysisPlan, said: list[str]) -> pd.DataFrame:
     parts = []
-    for test in plan.t_tests:
+    for test in plan.t_tests if len(used) else ():
         table = _attempt(said, f"The t tests against the {test.label} cannot be run", _one_t, used, plan, test)
         if table is not None:
+            said += table.attrs["notes"]
             parts.append(table.assign(factor=test.each, reference=test.label))
     columns = ["factor", "reference", *T_COLUMNS]
     return pd.concat(parts, ignore_index=True)[columns] if parts else pd.DataFrame(columns=columns)
 
 
 def _one_t(used: pd.DataFrame, plan: AnalysisPlan, test: TTestPlan) -> pd.DataFrame:
-    chosen = used if test.where is None else used[matching(used, test.where)]
+    chosen = selected(used, test.where)
     return t_tests(
         chosen, plan.measure, "participant", each=test.each, against=dict(test.against),
         levels={test.each: plan.levels[test.each]},

@@ -15,7 +15,7 @@ from scipy import special, stats
 from analysis.cells import Levels, names_of
 from analysis.columns import labels, numbers, require
 from analysis.contrasts import subsets, sum_to_zero
-from analysis.errors import AnalysisError
+from analysis.errors import AnalysisError, check_share
 from analysis.restricted_likelihood import Fitted, Products
 
 FEW_STIMULI = 8
@@ -46,6 +46,7 @@ def mixed_model(
     residual_p, intercept_w and intercept_p (of participants), `attrs["notes"]` sentences. Raises
     AnalysisError.
     """
+    check_share("level", level, 0.95)
     names, numeric = names_of(factors), names_of(covariates)
     require(data, [dv, subject, stimulus, *names, *numeric])
     if subject == stimulus:

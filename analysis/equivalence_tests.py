@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,7 +11,7 @@ from scipy import special
 
 from analysis.cells import Levels
 from analysis.comparisons import pairwise
-from analysis.errors import AnalysisError
+from analysis.errors import AnalysisError, check_share
 
 
 def equivalence(
@@ -29,17 +30,17 @@ def equivalence(
 ) -> pd.DataFrame:
     """TOST on every pairwise difference of marginal means (Schuirmann 1987).
 
-    bound: the largest difference that would not matter, in the units of `dv`: one number for plus and
-    minus, or (lower, upper); decide it before seeing the data. Other arguments as for `pairwise`.
+    bound: the largest difference that would not matter, in the units of `dv`: one number above 0 for plus and
+    minus, or (lower, upper), to be decided before seeing the data; alpha: of each one-sided test, in (0, 1).
+    Other arguments as for `pairwise`.
 
     Returns the levels of `by`, a, b, estimate, se, df, lower_bound, upper_bound, t_lower, p_lower,
     t_upper, p_upper, p (the larger of the two), ci_low, ci_high (1 - 2 alpha limits, 90 % by default)
     and equivalent (p < alpha, which is when the limits lie inside the bounds). Not corrected for the
     number of pairs: to call all levels equivalent, all pairs must be. A pair without variance has no p.
     """
-    lower, upper = (-abs(bound), abs(bound)) if np.isscalar(bound) else bound  # type: ignore[arg-type, misc]
-    if not lower < upper:
-        raise AnalysisError(f"The bounds must be a lower and an upper one; {lower} is not below {upper}.")
+    lower, upper = _bounds(bound)
+    check_share("alpha", alpha, 0.05)
     pairs = pairwise(
         data, dv, subject, within, between, factors=factors, by=by, model=model, adjust="none", levels=levels
     )
@@ -60,6 +61,20 @@ def equivalence(
     return table
 
 
+def _bounds(bound: float | tuple[float, float]) -> tuple[float, float]:
+    if not isinstance(bound, tuple | list | np.ndarray):
+        if not 0 < bound < math.inf:
+            raise AnalysisError(
+                f"bound is the largest difference that would not matter, a number above 0, not {bound!r}; "
+                "give (lower, upper) for bounds that differ."
+            )
+        return -bound, bound
+    lower, upper = bound
+    if not lower < upper:
+        raise AnalysisError(f"The bounds must be a lower and an upper one; {lower} is not below {upper}.")
+    return lower, upper
+
+
 def equivalence_of_effects(table: pd.DataFrame, eta_p2_bound: float, alpha: float = 0.05) -> pd.DataFrame:
     """Is a whole effect negligible? Noncentral F test against a bound on partial eta squared.
 
@@ -67,8 +82,8 @@ def equivalence_of_effects(table: pd.DataFrame, eta_p2_bound: float, alpha: floa
     Lakens 2021, with the noncentrality df2 x eta / (1 - eta) that matches partial eta squared of a
     repeated-measures table. Returns effect, F, df1, df2, eta_p2, bound, p and equivalent.
     """
-    if not 0 < eta_p2_bound < 1:
-        raise AnalysisError(f"The bound on partial eta squared must lie between 0 and 1, not {eta_p2_bound}.")
+    check_share("eta_p2_bound", eta_p2_bound, 0.02)
+    check_share("alpha", alpha, 0.05)
     result = table[["effect", "F", "df1", "df2", "eta_p2"]].copy()
     noncentrality = result["df2"] * eta_p2_bound / (1 - eta_p2_bound)
     result["bound"] = eta_p2_bound

@@ -15,6 +15,12 @@ class AnalysisWarning(UserWarning):
     """A result was computed, but on something other than what was handed in."""
 
 
+def check_share(name: str, value: float, usual: float) -> None:
+    """Raises AnalysisError unless `value` lies between 0 and 1, both excluded; `usual` is shown as an example."""
+    if not 0 < value < 1:
+        raise AnalysisError(f"{name} is a share between 0 and 1, as {usual:g}, not {value!r}.")
+
+
 def listed(names: object, most: int = 8) -> str:
     """'P01, P02 and P03': at most `most` names, then how many more there are."""
     words = [str(name) for name in names]  # type: ignore[attr-defined]

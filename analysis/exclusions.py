@@ -44,3 +44,13 @@ def matching(trials: pd.DataFrame, where: str) -> pd.Series:
                 raise AnalysisError(f"The exclusion {where!r}: {match[1]} holds words; use == or !=.")
             chosen &= _COMPARE[match[2]](column.map(label), value) & column.notna()
     return chosen
+
+
+def selected(trials: pd.DataFrame, where: str | None) -> pd.DataFrame:
+    """The trials that meet the condition, all without one; AnalysisError where none does."""
+    if where is None:
+        return trials
+    chosen = trials[matching(trials, where)]
+    if not len(chosen):
+        raise AnalysisError(f"None of the {len(trials)} trials meets {where!r}, so there is nothing to test.")
+    return chosen

@@ -10,7 +10,7 @@ from scipy import special, stats
 
 from analysis.cells import names_of
 from analysis.columns import numbers, require
-from analysis.errors import AnalysisError
+from analysis.errors import AnalysisError, check_share
 
 
 def proportions(
@@ -31,6 +31,8 @@ def proportions(
     Returns the columns of `by`, k, n, proportion, chance, p (exact binomial, two-sided), exact_low,
     exact_high (Clopper & Pearson 1934), wilson_low, wilson_high (Wilson 1927).
     """
+    check_share("level", level, 0.95)
+    check_share("chance", chance, 0.5)
     by = names_of(by)
     require(data, [successes, *([trials] if trials else []), *by])
     counts = pd.DataFrame({name: data[name] for name in by})

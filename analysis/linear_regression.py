@@ -11,7 +11,7 @@ from scipy import stats
 
 from analysis.cells import names_of
 from analysis.columns import labels, numbers, require
-from analysis.errors import AnalysisError, listed
+from analysis.errors import AnalysisError, check_share, listed
 
 
 def regression(data: pd.DataFrame, dv: str, predictors: str | Sequence[str], level: float = 0.95) -> pd.DataFrame:
@@ -26,8 +26,7 @@ def regression(data: pd.DataFrame, dv: str, predictors: str | Sequence[str], lev
     log_likelihood (AIC and BIC count the error variance), durbin_watson, shapiro_w, shapiro_p,
     loo_rmse (leave one out). Raises AnalysisError, also when predictors are linearly dependent.
     """
-    if not 0 < level < 1:
-        raise AnalysisError(f"level is a share between 0 and 1, as 0.95, not {level!r}.")
+    check_share("level", level, 0.95)
     fitted, terms, _ = _fitted(data, dv, names_of(predictors))
     X, y = fitted.model.exog, fitted.model.endog
     if float(fitted.centered_tss) <= 1e-26 * float(y @ y):

@@ -16,7 +16,7 @@ from scipy import stats
 
 from analysis.cells import CellMeans, Levels, cell_means, names_of
 from analysis.contrasts import kronecker, subsets, sum_to_zero, within_contrasts
-from analysis.errors import AnalysisError
+from analysis.errors import AnalysisError, check_share
 from analysis.linear_fit import LinearFit, fit
 
 MODELS = ("multivariate", "univariate", "pooled")
@@ -160,6 +160,7 @@ def emmeans(
     units of `dv`. Groups weigh equally. `attrs["notes"]` as for `anova`. Raises AnalysisError.
     """
     check_model(model)
+    check_share("level", level, 0.95)
     means = cell_means(data, dv, subject, within, between, levels)
     return emmeans_of(marginal_means(means, names_of(factors)), model, level)
 

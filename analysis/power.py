@@ -7,7 +7,7 @@ import math
 import pandas as pd
 from scipy import stats
 
-from analysis.errors import AnalysisError
+from analysis.errors import AnalysisError, check_share
 
 CONVENTIONS = ("as_in_spss", "gpower_default", "as_in_cohen")
 EFFECTS = ("within", "between", "interaction")
@@ -65,6 +65,9 @@ def power_rm_anova(
     if (eta_p2 is not None and not 0 <= eta_p2 < 1) or (f is not None and not 0 <= f < math.inf):
         raise AnalysisError("f must be a number from 0 up, and eta_p2 one from 0 up to but not including 1.")
     size = f if f is not None else None if eta_p2 is None else math.sqrt(eta_p2 / (1 - eta_p2))
+    check_share("alpha", alpha, 0.05)
+    if power is not None and not alpha < power < 1:
+        raise AnalysisError(f"power must lie between alpha ({alpha:g}) and 1, not {power}.")
     if [n, size, power].count(None) != 1:
         raise AnalysisError("Give two of n, effect size (f or eta_p2) and power; the third is computed.")
 
@@ -121,8 +124,6 @@ def _noncentrality(
 
 
 def _smallest_n(power_of, wanted: float, groups: int) -> int:  # type: ignore[no-untyped-def]
-    if not 0 < wanted < 1:
-        raise AnalysisError(f"power must lie between 0 and 1, not {wanted}.")
     n = 2 * groups
     while power_of(n) < wanted:
         n *= 2
@@ -146,6 +147,7 @@ def power_t_test(d: float, n: int, n2: int | None = None, alpha: float = 0.05, t
 
     Returns one row: d, n, n2, alpha, tails, ncp, df, t_critical, power.
     """
+    check_share("alpha", alpha, 0.05)
     df = n - 1 if n2 is None else n + n2 - 2
     ncp = d * math.sqrt(n if n2 is None else n * n2 / (n + n2))
     critical = float(stats.t.ppf(1 - alpha / tails, df))
@@ -176,6 +178,7 @@ def power_regression(
 
     Returns one row: f2, n, predictors, tested, alpha, lambda_, df1, df2, F_critical, power.
     """
+    check_share("alpha", alpha, 0.05)
     df1, df2 = predictors if tested is None else tested, n - predictors - 1
     critical = float(stats.f.ppf(1 - alpha, df1, df2))
     return pd.DataFrame(

@@ -58,6 +58,12 @@ def psychometric(
     by = names_of(by)
     if shape not in SHAPES:
         raise AnalysisError(f"shape must be one of {', '.join(SHAPES)}, not {shape!r}.")
+    if not (0 <= guess < 1 and (lapse is None or 0 <= lapse < 1 - guess)):
+        raise AnalysisError(
+            f"guess and lapse are shares of answers, from 0 up and together below 1, not {guess!r} and {lapse!r}."
+        )
+    if bootstrap < 0:
+        raise AnalysisError(f"bootstrap is a number of samples, 0 for no limits, not {bootstrap!r}.")
     require(data, [level, successes, *([trials] if trials else []), *by])
     table = pd.DataFrame({name: data[name] for name in by})
     table["x"], table["k"] = numbers(data, level), numbers(data, successes)

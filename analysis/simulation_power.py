@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 from scipy import special, stats
 
-from analysis.errors import AnalysisError
+from analysis.errors import AnalysisError, check_share
 from analysis.many_anovas import many_anovas
 from analysis.plan import AnalysisPlan
 from analysis.plan_parts import TTestPlan
@@ -46,6 +46,7 @@ def power_by_simulation(
     level), significant, experiments, power, ci_low, ci_high (95 %, Wilson). Post hoc tests,
     exclusions and t tests of a factor outside the analysis of variance are not simulated. Raises AnalysisError.
     """
+    check_share("alpha", alpha, 0.05)
     part, parts = shard
     if not 1 <= part <= parts:
         raise AnalysisError(f"The shard must be i/n with i from 1 to n, not {part}/{parts}.")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import warnings
 from collections.abc import Mapping
 from itertools import combinations
 from typing import Any
@@ -11,7 +13,7 @@ import pandas as pd
 
 from analysis.cells import Levels, cell_means
 from analysis.columns import labels, numbers, numeric_label, require
-from analysis.errors import AnalysisError, listed
+from analysis.errors import AnalysisError, AnalysisWarning, listed
 from analysis.t_statistics import from_moments, independent_tests, one_sample, paired_test
 
 COLUMNS = (
@@ -43,7 +45,8 @@ def t_tests(
     ci_low, ci_high, t, df, p (two-sided), d (Cohen's: estimate over sd) with 95 % limits from the
     noncentral t, g (Hedges', exact factor), bf10 (JZS, r = sqrt(2)/2), shapiro_w, shapiro_p (values or
     differences; nan between groups), rank_statistic, rank_p (Wilcoxon or Mann-Whitney, normal
-    approximation with continuity correction). Raises AnalysisError.
+    approximation with continuity correction). Levels of `each` without a value in `against` are not tested:
+    an AnalysisWarning and a sentence in `attrs["notes"]` name them. Raises AnalysisError.
     """
     given = [
         name
@@ -57,6 +60,10 @@ def t_tests(
     wanted = _wanted(against, each, list(parts)) if against is not None else {}
     rows: list[dict[str, Any]] = []
     notes: list[str] = []
+    if against is not None and len(wanted) < len(parts):
+        untested = [name for name in parts if name not in wanted]
+        notes.append(f"{each}: no value to test {listed(map(repr, untested))} against was given; not tested.")
+        warnings.warn(notes[-1], AnalysisWarning, stacklevel=2)
     for name, part in parts.items():
         if against is not None:
             if name in wanted:
@@ -116,6 +123,9 @@ def _only(levels: Levels | None, name: str) -> Levels | None:
 
 
 def _wanted(against: float | Mapping[Any, float], each: str | None, names: list[str]) -> dict[str, float]:
+    values = against.values() if isinstance(against, Mapping) else (against,)
+    if not all(math.isfinite(value) for value in values):
+        raise AnalysisError(f"The values to test against must be finite numbers, not {against!r}.")
     if not isinstance(against, Mapping):
         return dict.fromkeys(names, float(against))
     given = {numeric_label(name): float(value) for name, value in against.items()}

@@ -10,6 +10,9 @@ from protocols.study_file import StudyFile, parse_study, read_study
 LONGEST = 4.0
 """s that walks are shown where the study sets a limit."""
 
+TOO_LONG = ("order", "regression")
+"""Figures that need more: the course of a session 24 trials, a regression three levels."""
+
 SHORT_PAGES: dict[str, Any] = {
     "instructions": [
         {
@@ -36,6 +39,8 @@ def short_study(name: str) -> StudyFile:
         _shorten_walk_ratio(document)
     else:
         _shorten(document)
+    for analysis in (document["analysis"], *document["analysis"].get("also", ())):
+        analysis["figures"] = [figure for figure in analysis.get("figures", ()) if figure["kind"] not in TOO_LONG]
     document["study"] = f"{document['study']}_demo"
     document["repetitions"] = 1
     document.pop("breaks", None)
@@ -66,7 +71,6 @@ def _shorten(document: Any) -> None:
         document["task"]["time_limit"] = min(document["task"]["time_limit"], LONGEST)
     for analysis in (document["analysis"], *document["analysis"].get("also", ())):
         analysis.pop("regression", None)  # two levels are too few cases
-        analysis["figures"] = [figure for figure in analysis.get("figures", ()) if figure["kind"] != "regression"]
     for groups in (document["analysis"].get("groups") or {}).values():
         left = document["factors"][groups["of"]]
         kept = {name: [level for level in levels if level in left] for name, levels in groups["levels"].items()}

@@ -16,10 +16,14 @@ from analysis import (
     AnalysisWarning,
     anova,
     art_anova,
+    emmeans,
+    equivalence,
     mixed_model,
     normality,
     pairwise,
     power_rm_anova,
+    proportions,
+    psychometric,
     regression,
     t_tests,
 )
@@ -182,6 +186,54 @@ def test_participant_and_stimulus_of_a_mixed_model_are_two_columns() -> None:
         mixed_model(small(), "score", "id", "id", "speed")
 
 
-def test_a_confidence_level_in_per_cent_is_refused_instead_of_giving_no_limits() -> None:
-    with pytest.raises(AnalysisError, match="a share between 0 and 1"):
-        regression(small(), "score", ["speed"], level=95)
+@pytest.mark.parametrize("level", [95, 1.0, 0.0, -0.1, math.nan])
+def test_a_confidence_level_outside_0_to_1_is_refused_instead_of_giving_no_limits(level: float) -> None:
+    data = small().assign(right=1)
+    for computed in (
+        lambda: regression(data, "score", ["speed"], level=level),
+        lambda: emmeans(data, "score", "id", "speed", factors="speed", level=level),
+        lambda: pairwise(data, "score", "id", "speed", factors="speed", level=level),
+        lambda: mixed_model(data, "score", "id", "cue", "speed", level=level),
+        lambda: proportions(data, "right", level=level),
+    ):
+        with pytest.raises(AnalysisError, match=f"level is a share between 0 and 1, as 0.95, not {level}"):
+            computed()
+
+
+@pytest.mark.parametrize("bound", [-1, 0, math.nan, math.inf])
+def test_a_bound_of_equivalence_that_is_no_distance_is_refused(bound: float) -> None:
+    with pytest.raises(AnalysisError, match=f"a number above 0, not {bound}; give"):
+        equivalence(small(), "score", "id", "speed", factors="speed", bound=bound)
+
+
+def test_bounds_in_the_wrong_order_and_an_alpha_in_per_cent_are_refused() -> None:
+    with pytest.raises(AnalysisError, match="1 is not below -1"):
+        equivalence(small(), "score", "id", "speed", factors="speed", bound=(1, -1))
+    with pytest.raises(AnalysisError, match=r"alpha is a share between 0 and 1, as 0\.05, not 5"):
+        equivalence(small(), "score", "id", "speed", factors="speed", bound=1, alpha=5)
+    with pytest.raises(AnalysisError, match="alpha is a share"):
+        power_rm_anova(effect="within", measures=3, n=20, f=0.25, alpha=5)
+
+
+def test_a_power_no_better_than_chance_is_refused() -> None:
+    with pytest.raises(AnalysisError, match=r"power must lie between alpha \(0.05\) and 1, not 0.01"):
+        power_rm_anova(effect="within", measures=3, n=20, power=0.01)
+
+
+@pytest.mark.parametrize("wrong", [{"guess": 1.0}, {"guess": -0.1}, {"lapse": 1.0}, {"guess": 0.5, "lapse": 0.5}])
+def test_guesses_and_lapses_that_leave_no_room_for_a_function_are_refused(wrong: dict[str, float]) -> None:
+    data = pd.DataFrame({"x": [1, 2, 3, 4], "k": [1, 4, 5, 9], "n": 10})
+    with pytest.raises(AnalysisError, match="guess and lapse are shares"):
+        psychometric(data, "x", "k", "n", **wrong)
+
+
+def test_levels_without_a_value_to_test_against_are_named_and_not_tested() -> None:
+    with pytest.warns(AnalysisWarning, match="'fast' against was given; not tested"):
+        result = t_tests(small(), "score", "id", each="speed", against={"slow": 0.0})
+    assert result["level"].to_list() == ["slow"]
+    assert any("'fast'" in note for note in result.attrs["notes"])
+
+
+def test_a_value_to_test_against_that_is_no_number_is_refused() -> None:
+    with pytest.raises(AnalysisError, match="finite numbers"):
+        t_tests(small(), "score", "id", each="speed", against={"slow": 0.0, "fast": math.nan})

@@ -200,6 +200,18 @@ def test_declared_exclusions_are_applied_and_reported_with_their_reason(tmp_path
     assert "looked away" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
 
+def test_exclusions_that_leave_no_trial_are_named_once_instead_of_a_complaint_per_test(tmp_path: Path) -> None:
+    text = study_text().replace("exclusions: []", "exclusions: [{where: response_time > 0, reason: looked away}]")
+    outcome = analyse(write_study(tmp_path / "s", 3, text), tmp_path / "out")
+    about = [warning for warning in outcome.warnings if "excluded" in warning]
+    assert about == [
+        "All 288 trials are excluded, 288 by 'response_time > 0' (looked away), so nothing can be tested; correct the "
+        "exclusions in a copy of the study file, or record again."
+    ]
+    assert not any("no rows" in warning for warning in outcome.warnings)
+    assert len(pd.read_csv(tmp_path / "out" / "trials.csv")) == 288
+
+
 def test_a_condition_that_cannot_be_read_names_the_columns() -> None:
     trials = pd.DataFrame({"late_frames": [0, 9], "actor": ["F1", "M1"]})
     assert list(matching(trials, "late_frames > 5")) == [False, True]

@@ -84,10 +84,10 @@ def test_t_tests_of_simulated_experiments_are_t_tests(study: dict[str, Any]) -> 
         (w, cell[0], values[0, w, i]) for w in range(8) for i, cell in enumerate(product(*model.design.within.values()))
     ]
     data = pd.DataFrame(rows, columns=["who", "actor", "y"])
-    table = t_tests(data, "y", "who", each="actor", against={"F1": 0.0069})
+    table = t_tests(data, "y", "who", each="actor", against=0.0069).set_index("level")
     from analysis.simulation_power import _t_p
 
-    assert _t_p(values, model, "actor", "F1", 0.0069)[0] == pytest.approx(table["p"][0], rel=1e-8)
+    assert _t_p(values, model, "actor", "F1", 0.0069)[0] == pytest.approx(table.loc["F1", "p"], rel=1e-8)
 
 
 def test_without_a_simulation_section_the_published_observers_are_simulated(study: dict[str, Any]) -> None:

@@ -66,6 +66,23 @@ def test_people_who_all_go_to_one_end_have_a_threshold_there():
     assert test.table["mean"].item() == pytest.approx(5.0, abs=0.05)
 
 
+def test_thresholds_at_the_end_of_what_quest_plus_may_believe_in_are_said_to_be():
+    asked = plan(QUEST)
+    data = pd.concat([trials([3, 4, 5] * 6, [0] * 18, "P01"), trials([3, 2, 4] * 6, [0, 0, 1] * 6, "P02")])
+    test = track_tests(data, asked, asked.adaptive)
+    assert test.more.set_index("participant")["at_end"].to_dict() == {"P01": True, "P02": False}
+    assert test.table["sentence"].item().endswith("1 of 2 track(s) settled at the end of the thresholds")
+    assert "thresholds from 1 to 5 only" in test.notes[0]
+
+
+def test_thresholds_inside_the_grid_carry_no_such_note():
+    asked = plan(QUEST)
+    test = track_tests(trials([2, 3, 4] * 6, [0, 1, 1] * 6), asked, asked.adaptive)
+    assert not test.more["at_end"].any()
+    assert test.notes == ()
+    assert "settled" not in test.table["sentence"].item()
+
+
 def test_a_track_that_never_turned_has_no_threshold_and_no_track_with_one_is_a_sentence():
     asked = plan(STAIRCASE)
     turned = trials([5, 4, 3, 4, 3, 4, 5, 4], [1, 1, 0, 1, 0, 0, 1, 0])

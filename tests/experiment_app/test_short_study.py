@@ -18,3 +18,11 @@ def test_every_shipped_study_has_a_short_version_without_mistakes(name, tmp_path
     (tmp_path / short.name).write_text(short.text, encoding="utf-8")
     assert checked_study(str(tmp_path / short.name)).study == short.study
     assert len(make_trials(short.study, 1)) == math.prod(map(len, short.study.factors.values())) <= 16
+
+
+@pytest.mark.parametrize("name", shipped_studies())
+def test_a_short_study_plans_no_figure_that_so_few_trials_and_levels_cannot_fill(name):
+    analysis = short_study(name).study.analysis
+    kinds = {figure.kind for part in (analysis, *analysis.also) for figure in part.figures}
+    assert kinds
+    assert not kinds & {"order", "regression"}
