@@ -123,9 +123,7 @@ def _conditions_and_places(study: Study) -> Iterator[tuple[Mapping[str, Level], 
 
 def expected_minutes(study: Study) -> float:
     """How long a session takes, in minutes: reading every page, questions, trials, intervals and breaks."""
-    pages = study.pages
-    shown = [pages.consent, *pages.instructions, pages.before_practice, pages.before_trials, pages.debrief]
-    words = sum(len(page.text.split()) for page in shown if page is not None)
+    words = sum(len(page.text.split()) for page in study.pages.in_order)
     trials = len(make_trials(study, seed=1)) + len(study.practice)
     breaks = (trials // study.breaks.every) * 60.0 if study.breaks else 0.0
     answering = trials * (study.task.seconds(study.stimulus) + study.interval)
@@ -188,9 +186,8 @@ def _unused_factors(study: Study) -> Iterator[str]:
 def _wrong_arrows(study: Study) -> Iterator[str]:
     keys = study.task.keys_for(1)
     named = " and ".join(f"{{{name}}}" for name in keys if name != "break")
-    told = " ".join(page.text for page in [*study.pages.instructions, study.pages.before_practice] if page)
     for sign, key in (("←", "left"), ("→", "right")):
-        if sign in told and key not in keys.values():
+        if sign in study.pages.told and key not in keys.values():
             yield f"the instructions name {sign}, which is no key of the task; write {named} instead."
 
 
@@ -209,10 +206,7 @@ def _small_pages(study: Study) -> Iterator[str]:
     from experiment_app.scene import Line, Page
     from experiment_app.staging import paragraphs
 
-    pages = study.pages
-    for page in [pages.consent, *pages.instructions, pages.before_practice, pages.before_trials, pages.debrief]:
-        if page is None:
-            continue
+    for page in study.pages.in_order:
         lines = (Line(page.title, "title"), *paragraphs(page.text))
         placed = layout_page(Page(lines, hint=study.words.page_hint), 1920, 1080, 1.0)
         smallest = min(text.size for text in placed.texts if text.role == "text")

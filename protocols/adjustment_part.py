@@ -104,7 +104,7 @@ class Adjustment(TaskPart):
             yield Mistake(where, f"minimum {reach.minimum:g} is not below maximum {reach.maximum:g}")
             return
         yield from self._starts(study)
-        told = " ".join(page.text for page in [*study.pages.instructions, study.pages.before_practice] if page)
+        told = study.pages.told
         if self.keys.counterbalanced and not ("{lower}" in told and "{raise}" in told):
             message = "the instructions must name the keys as {lower} and {raise}, which differ between participants"
             yield Mistake((*TASK, "keys", "counterbalanced"), message)

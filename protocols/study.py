@@ -115,6 +115,17 @@ class Pages(Part):
     before_trials: TextPage | None = None
     debrief: TextPage
 
+    @property
+    def in_order(self) -> list[TextPage]:
+        """Every page that a participant who takes part reads, in order."""
+        found = [self.consent, *self.instructions, self.before_practice, self.before_trials, self.debrief]
+        return [page for page in found if page is not None]
+
+    @property
+    def told(self) -> str:
+        """What the participant is told of the task before the first trial."""
+        return " ".join(page.text for page in [*self.instructions, self.before_practice] if page is not None)
+
 
 class Words(Part):
     """Short texts of the screen, so that a study can be in any language."""
