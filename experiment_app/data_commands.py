@@ -104,8 +104,9 @@ def _make_again(folder: Path, made: Derived) -> None:
     from analysis.exports.exporting import export as write_export
     from analysis.exports.tree import remove_tree
     from analysis.planned import analyse
+    from experiment_app.participants import journals
 
-    somebody = any((folder / "sourcedata").glob("sub-*/run-*/journal.jsonl"))
+    somebody = bool(journals(folder))
     if made.what == "report":
         new = analyse(folder, Path(made.out)).paths if somebody else ()
         for stale in {Path(made.out) / name for name in made.files} - set(new):

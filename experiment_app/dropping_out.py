@@ -6,6 +6,7 @@ from pathlib import Path
 
 from experiment_app.errors import UsageError
 from experiment_app.journal import reopen_journal
+from experiment_app.participants import unknown_participant
 from experiment_app.run_folder import Run, check_participant, participant_runs
 from protocols.record import Ended
 
@@ -16,12 +17,9 @@ def drop_out(folder: Path, participant: str) -> Run:
     folder: DATA/<study>.
     """
     check_participant(participant)
-    if not (folder / "sourcedata").is_dir():
-        raise UsageError(f"{folder} is no study's folder of data; name one, as data/walk_ratio.")
     runs = participant_runs(folder.parent, folder.name, participant)
     if not runs:
-        known = ", ".join(sorted(p.name[4:] for p in (folder / "sourcedata").glob("sub-*")))
-        raise UsageError(f"there is no participant {participant} in {folder}; there are: {known or 'none'}.")
+        raise unknown_participant(folder, participant)
     run = runs[-1]
     if run.end:
         reasons = {"finished": "has finished, so the place is filled"}

@@ -33,7 +33,8 @@ from experiment_app.opening import (
     refuse_mixed,
     unfinished_run,
 )
-from experiment_app.run_folder import Run, check_participant, first_headers
+from experiment_app.participants import first_headers
+from experiment_app.run_folder import Run, check_participant
 from experiment_app.staging import crowd_of, making_of
 from experiment_app.timing_page import write_certificate
 from experiment_app.triggers import trigger_line, triggering

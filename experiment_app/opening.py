@@ -12,15 +12,8 @@ from typing import Any
 
 from experiment_app.errors import UsageError
 from experiment_app.journal import Journal, create_journal, reopen_journal
-from experiment_app.run_folder import (
-    Run,
-    first_headers,
-    new_run,
-    participant_number,
-    participant_runs,
-    progress,
-    run_numbers,
-)
+from experiment_app.participants import first_headers, participant_number
+from experiment_app.run_folder import Run, new_run, participant_runs, progress, run_numbers
 from protocols import resuming
 from protocols.assignment import group_of
 from protocols.consistency import shown_walks

@@ -15,7 +15,7 @@ from typing import IO, Any
 
 from experiment_app.crash_note import crash_reason
 from experiment_app.errors import UsageError
-from protocols.assignment import GIVEN_BACK, Arrival, place_of
+from protocols.assignment import GIVEN_BACK
 from protocols.record import DamagedLineError, decode_line
 from protocols.session import Progress
 
@@ -23,12 +23,6 @@ PARTICIPANT = re.compile(r"[A-Za-z0-9]{1,32}")
 """Participant IDs: letters and digits only, as the labels of BIDS."""
 
 JOURNAL = "journal.jsonl"
-
-END_BYTES = 4096
-"""Bytes at the end of a journal that hold its last line when that is an end."""
-
-WITHDRAWN = "withdrawn.jsonl"
-"""Beside sourcedata: one line for every place given back, and nothing else of those who withdrew."""
 
 
 @dataclass(frozen=True)
@@ -113,66 +107,6 @@ def participant_runs(data: Path, study: str, participant: str) -> list[Run]:
     numbers = run_numbers(data, study, participant)
     runs = [_read(folder / f"run-{number}", study, participant, number) for number in numbers]
     return [run for run in runs if run.lines]
-
-
-def participant_number(data: Path, study: str, participant: str) -> int:
-    """The participant's place in the order of arrival, from 1; the same in every run of the participant.
-
-    A place that somebody who declined, withdrew or dropped out has given back is filled first, so that the design
-    stays balanced.
-    """
-    return place_of(participant, arrivals(data, study), places_given_back(study_folder(data, study)))
-
-
-def arrivals(data: Path, study: str) -> list[Arrival]:
-    """Who has a place in the order of arrival, and how each participant's latest run ended."""
-    known = []
-    for person in sorted((study_folder(data, study) / "sourcedata").glob("sub-*")):
-        numbers = run_numbers(data, study, person.name.removeprefix("sub-"))
-        for latest in [person / f"run-{number}" / JOURNAL for number in reversed(numbers)]:
-            try:
-                with open(latest, encoding="utf-8") as file:
-                    header = decode_line(file.readline())
-            except (OSError, ValueError):
-                continue  # a run that never began
-            known.append(Arrival(header["participant"], int(header["participant_number"]), last_end(latest)))
-            break
-    return known
-
-
-def last_end(journal: Path) -> str:
-    """Why a run ended, from the last line of its journal alone; "" when that is no end."""
-    with open(journal, "rb") as file:
-        file.seek(max(file.seek(0, os.SEEK_END) - END_BYTES, 0))
-        tail = file.read().rstrip(b"\n").split(b"\n")[-1]
-    try:
-        line = decode_line(tail.decode("utf-8"))
-    except (DamagedLineError, UnicodeDecodeError):
-        return ""
-    return str(line["reason"]) if line["kind"] == "end" else ""
-
-
-def places_given_back(folder: Path) -> list[int]:
-    """The places in the order of arrival that participants of a study's folder gave back by withdrawing."""
-    path = folder / WITHDRAWN
-    if not path.exists():
-        return []
-    return [int(line["participant_number"]) for line in journal_lines(path)[0]]
-
-
-def first_headers(data: Path, study: str) -> list[dict[str, Any]]:
-    """The header of every participant's first run, by participant; only first lines are read, damaged ones skipped."""
-    headers = []
-    for person in sorted((study_folder(data, study) / "sourcedata").glob("sub-*")):
-        for path in sorted(person.glob(f"run-*/{JOURNAL}"))[:1]:
-            try:
-                with open(path, encoding="utf-8") as file:
-                    line = decode_line(file.readline())
-            except (OSError, ValueError):
-                continue
-            if line["kind"] == "header":
-                headers.append(line)
-    return headers
 
 
 def run_numbers(data: Path, study: str, participant: str) -> list[int]:

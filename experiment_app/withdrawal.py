@@ -8,15 +8,14 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from experiment_app.derived import Derived, derived
-from experiment_app.errors import UsageError
 from experiment_app.journal import append_line
-from experiment_app.run_folder import JOURNAL, WITHDRAWN, check_participant, lock, places_given_back
-from protocols.record import Withdrawn, decode_line, encode_line
+from experiment_app.participants import WITHDRAWN, header_of, journals, places_given_back, unknown_participant
+from experiment_app.run_folder import JOURNAL, check_participant, lock
+from protocols.record import Withdrawn, encode_line
 
 LEAVING = ".withdrawing-sub-"
 """Start of the name that a participant's folder has between the first and the last step."""
@@ -41,14 +40,11 @@ def plan_withdrawal(folder: Path, participant: str) -> Withdrawal:
     """What a withdrawal will touch; raises UsageError when there is no such participant or their run is going on."""
     check_participant(participant)
     data = folder / "sourcedata"
-    if not data.is_dir():
-        raise UsageError(f"{folder} is no study's folder of data; name one, as data/walk_ratio.")
     person = data / f"sub-{participant}"
     if not person.is_dir():
         person = data / f"{LEAVING}{participant}"  # a withdrawal that was killed half-way is finished
     if not person.is_dir():
-        known = ", ".join(sorted(p.name[4:] for p in data.glob("sub-*")))
-        raise UsageError(f"there is no participant {participant} in {data}; there are: {known or 'none'}.")
+        raise unknown_participant(folder, participant)
     for journal in person.glob(f"run-*/{JOURNAL}"):
         with open(journal, "rb") as file:
             lock(file, journal)
@@ -74,7 +70,7 @@ def withdraw(plan: Withdrawal, remake: Callable[[Derived], None], say: Callable[
     say(f"Removed participant {plan.participant} from {plan.folder / 'sourcedata'} (files: {plan.files}).")
     if place is not None:
         say(f"Place {place} in the order of arrival is free again; the next new participant takes it.")
-    whole, nobody = True, not any((plan.folder / "sourcedata").glob(f"sub-*/run-*/{JOURNAL}"))
+    whole, nobody = True, not journals(plan.folder)
     done = "Removed, since nobody is left in it" if nobody else f"Made again without participant {plan.participant}"
     for made in plan.made:
         try:
@@ -91,6 +87,7 @@ def withdraw(plan: Withdrawal, remake: Callable[[Derived], None], say: Callable[
 def _place(plan: Withdrawal) -> int | None:
     """The participant's place in the order of arrival; None when no header can be read any more."""
     for journal in sorted(plan.person.glob(f"run-*/{JOURNAL}")):
-        with suppress(OSError, ValueError, KeyError):
-            return int(decode_line(journal.read_text(encoding="utf-8").split("\n")[0])["participant_number"])
+        header = header_of(journal)
+        if header is not None:
+            return int(header["participant_number"])
     return None

@@ -8,7 +8,8 @@ from experiment_app.balance import balance, order_in_words, what_participant_see
 from experiment_app.command import run
 from experiment_app.dropping_out import drop_out
 from experiment_app.errors import UsageError
-from experiment_app.run_folder import journal_lines, participant_number
+from experiment_app.participants import participant_number
+from experiment_app.run_folder import journal_lines
 from experiment_app.simulate import simulate
 from protocols.study_file import StudyFile, parse_study
 from tests.experiment_app.sessions import opened, play

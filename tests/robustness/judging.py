@@ -56,7 +56,8 @@ def journal_verdict(data: Path, study: str, participant: str, out: Path) -> str:
     from analysis.exports.exporting import export
     from analysis.journal import read_study
     from experiment_app.opening import unfinished_run
-    from experiment_app.run_folder import participant_number, progress
+    from experiment_app.participants import participant_number
+    from experiment_app.run_folder import progress
 
     verdicts = []
     for read in (
