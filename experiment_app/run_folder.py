@@ -158,11 +158,14 @@ def journal_lines(path: Path) -> tuple[tuple[dict[str, Any], ...], int]:
     return tuple(lines), 0
 
 
-def run_at(folder: Path) -> Run:
-    """The run recorded in a folder, as .../sub-P01/run-1; raises UsageError when there is none."""
+def run_at(place: Path) -> Run:
+    """The run at a path, its folder (.../sub-P01/run-1) or the journal in it; raises UsageError when there is none."""
+    folder = place.parent if place.name == JOURNAL else place
     lines = journal_lines(folder / JOURNAL)[0] if (folder / JOURNAL).is_file() else ()
     if not lines:
-        raise UsageError(f"{folder} holds no recorded run; name a folder as data/walk_ratio/sourcedata/sub-P01/run-1.")
+        raise UsageError(
+            f"{folder} holds no journal of a run; name a run, as data/walk_ratio/sourcedata/sub-P01/run-1."
+        )
     _require_header(lines, folder / JOURNAL)
     return Run(folder, lines[0]["study"], lines[0]["participant"], lines[0]["run"], lines)
 

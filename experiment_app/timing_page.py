@@ -6,8 +6,7 @@ import os
 from pathlib import Path
 
 from experiment_app.certificate import markdown, verdict
-from experiment_app.errors import UsageError
-from experiment_app.run_folder import Run, journal_lines
+from experiment_app.run_folder import Run, journal_lines, run_at
 from experiment_app.timing import timing_of_run
 
 NAME = "timing.md"
@@ -29,12 +28,6 @@ def write_certificate(run: Run) -> str:
     return f"{verdict(timing).level}, see {path}"
 
 
-def certificate_of(folder: Path) -> str:
-    """The certificate (Markdown) of the run in a folder that holds a journal; raises UsageError."""
-    journal = folder / "journal.jsonl" if folder.is_dir() else folder
-    if not journal.is_file():
-        raise UsageError(f"{folder} holds no journal; name a run, as data/walk_ratio/sourcedata/sub-P01/run-1.")
-    lines, _ = journal_lines(journal)
-    if not lines or lines[0]["kind"] != "header":
-        raise UsageError(f"{journal} has no whole first line, so nothing is known of the run.")
-    return markdown(timing_of_run(lines))
+def certificate_of(place: Path) -> str:
+    """The certificate (Markdown) of the run at a path (its folder or journal); raises UsageError when there is none."""
+    return markdown(timing_of_run(run_at(place).lines))

@@ -7,7 +7,7 @@ from pathlib import Path
 from experiment_app.console.progress import Watched, after
 from experiment_app.errors import UsageError
 from experiment_app.opening import recorded_plan
-from experiment_app.run_folder import JOURNAL, Run, journal_lines
+from experiment_app.run_folder import JOURNAL, Run, run_at
 from protocols.record import DamagedLineError, decode_line
 
 
@@ -50,11 +50,6 @@ def newest_run(folder: Path, participant: str = "") -> Run:
     if not journals:
         whose = f" of participant {participant}" if participant else ""
         raise UsageError(f"{folder} holds no run{whose}; name a study's folder of data, as data/walk_ratio.")
-    path = journals[-1]
-    lines = journal_lines(path)[0]
-    if not lines:
-        raise UsageError(f"{path} is empty yet; try again in a moment.")
-    if lines[0]["kind"] != "header":
-        raise UsageError(f"{path} does not begin with its header, so nothing is known of the run.")
-    person = path.parents[1].name.removeprefix("sub-")
-    return Run(path.parent, folder.name, person, int(path.parent.name.removeprefix("run-")), lines)
+    if not journals[-1].stat().st_size:
+        raise UsageError(f"{journals[-1]} is empty yet; try again in a moment.")
+    return run_at(journals[-1])

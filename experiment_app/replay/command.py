@@ -14,7 +14,7 @@ from experiment_app.opening import recorded_plan, recorded_versions
 from experiment_app.replay.film import film_length, trial_film
 from experiment_app.replay.frames import replayed_frames
 from experiment_app.replay.recorded import RecordedTrial, recorded_trials
-from experiment_app.run_folder import JOURNAL, Run, run_at
+from experiment_app.run_folder import Run, run_at
 from protocols.plan import Plan
 
 T = TypeVar("T")
@@ -43,7 +43,7 @@ class Checked:
 
 def opened(place: Path, number: int | None, practice: bool) -> tuple[Run, Plan, list[RecordedTrial]]:
     """The run at a path (its folder or its journal), its plan and the trials wanted; raises UsageError without any."""
-    run = run_at(place.parent if place.name == JOURNAL else place)
+    run = run_at(place)
     trials = [
         trial
         for trial in recorded_trials(run.lines)
