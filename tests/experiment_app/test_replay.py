@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -34,18 +35,21 @@ class Scripted:
 
     Every event comes up to 30 ms after it happened, as the time stamps of an X server do, some frames are late, and
     the person pauses, loses the window's focus and presses both keys at once.
+    wait: returns once the journal is safe, so that the disk's speed decides nothing.
     """
 
     period = PERIOD
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self, seed: int, wait: Callable[[], None]) -> None:
         self._chance = Random(seed)
+        self._wait = wait
         self._waiting: list[tuple[float, Event]] = []
         self._script_for = ""
         self.now = 0.0
         self.scenes: list[Scene] = []
 
     def poll(self, session: Session) -> tuple[float, list[Event]]:
+        self._wait()
         step = session.step
         if isinstance(step, TrialStep) and session.shown is not None and self._script_for != step.id:
             self._script_for = step.id
@@ -92,8 +96,8 @@ def recorded(data: Path, seed: int) -> tuple[Path, Scripted]:
     """The folder of a run of two trials that a scripted person did, and what she saw."""
     opened = open_new(short(), "P01", data, display={}, simulated=True)
     trials = tuple(step for step in opened.plan.steps if isinstance(step, TrialStep) and not step.trial.practice)
-    window = Scripted(seed)
     with opened.journal as journal:
+        window = Scripted(seed, journal.wait)
         run_session(begin(replace(opened.plan, steps=trials[:2])), window, journal)
     return opened.run.folder, window
 
