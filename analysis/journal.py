@@ -64,11 +64,13 @@ def read_records(path: Path, name: str = "") -> tuple[list[dict[str, Any]], bool
             if place == len(lines):
                 torn = True
                 break
-            raise AnalysisError(
-                f"{name}, line {place} of {len(lines)}: {error}. Restore the file from a copy."
-            ) from None
+            why = "the line is not UTF-8; it was altered" if isinstance(error, UnicodeDecodeError) else error
+            raise AnalysisError(f"{name}, line {place} of {len(lines)}: {why}. Restore the file from a copy.") from None
     if not records or records[0].get("kind") != "header":
-        raise AnalysisError(f"{name}: the file does not begin with a complete header line, so it is not a usable run.")
+        raise AnalysisError(
+            f"{name}: the file does not begin with a complete header line, so it is not a usable run. "
+            "Restore it from a copy, or move its run folder out of sourcedata."
+        )
     if records[0].get("format") != 1:
         raise AnalysisError(
             f"{name}: written in format {records[0].get('format')!r}; this version reads format 1. Update it."

@@ -51,6 +51,8 @@ def analyse(study_folder: Path, out: Path, unfinished: bool = False) -> Analysis
     same journals give the same bytes. Raises AnalysisError for what a person must put right.
     """
     study_folder, out = Path(study_folder), Path(out)
+    if (study_folder / "sourcedata").resolve() in [out.resolve(), *out.resolve().parents]:
+        raise AnalysisError(f"--out {out}: a report goes into a folder of its own, never among the journals.")
     recorded = read_study(study_folder, unfinished)
     if not recorded.runs:
         reasons = "; ".join(f"{who}: {why}" for who, why in recorded.left_out)

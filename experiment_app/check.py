@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 import math
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -161,7 +163,13 @@ def text_notes(study: Study) -> list[str]:
     from experiment_app.render.fonts import can_shape, missing_glyphs, needs_shaping
 
     texts = "".join(sorted(set("".join(_texts(study.model_dump())))))
-    notes = [*_unused_factors(study), *_wrong_arrows(study), *_small_pages(study), *_untrue_perspective(study)]
+    notes = [
+        *_unused_factors(study),
+        *_unknown_braces(study),
+        *_wrong_arrows(study),
+        *_small_pages(study),
+        *_untrue_perspective(study),
+    ]
     if not study.language.startswith("en") and study.words == Words():
         notes.append(f"language is {study.language}, but the buttons and hints are English; translate them in words.")
     missing = sorted(missing_glyphs(texts))
@@ -181,6 +189,19 @@ def _unused_factors(study: Study) -> Iterator[str]:
     for factor in study.factors:
         if factor not in referred_factors(study):
             yield f"factor {factor} changes nothing that is shown; refer to it as ${factor} in stimulus or task."
+
+
+def _unknown_braces(study: Study) -> Iterator[str]:
+    """Names in braces that stand for no key, which the participant would read as they are written."""
+    known = list(study.task.keys_for(1))
+    told = [*study.pages.instructions, study.pages.before_practice, study.pages.before_trials]
+    words = " ".join(f"{page.title} {page.text}" for page in told if page)
+    for written in dict.fromkeys(re.findall(r"\{[^{}\s]*\}?", words)):
+        name = written.strip("{}")
+        if written != f"{{{name}}}" or name not in known:
+            near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
+            way = f"did you mean {{{near[0]}}}?" if near else f"the keys are {', '.join(f'{{{k}}}' for k in known)}."
+            yield f"{written} in the instructions is no key of the task and is shown as it is written; {way}"
 
 
 def _wrong_arrows(study: Study) -> Iterator[str]:

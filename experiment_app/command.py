@@ -53,20 +53,31 @@ def run(arguments: list[str]) -> int:
     try:
         result = app(arguments, exit_on_error=False, print_error=True, result_action="return_value")
         return result if isinstance(result, int) else 0
-    except (UsageError, FileNotFoundError) as error:
+    except UsageError as error:
         problems.print(f"gaitlab: {error}", style="red", markup=False)
         return 2
     except KeyboardInterrupt:
         problems.print("gaitlab: interrupted; everything recorded so far is kept.", markup=False)
         return 1
-    except (RunError, OSError) as error:
+    except RunError as error:
         problems.print(f"gaitlab: {error}", style="red", markup=False)
         return 1
+    except OSError as error:
+        problems.print(f"gaitlab: {_of_the_system(error)}", style="red", markup=False)
+        return 2 if isinstance(error, FileNotFoundError) else 1
     except Exception as error:
         status = _status_of_named_error(error)
         if status is None:
             raise
         return status
+
+
+def _of_the_system(error: OSError) -> str:
+    """What the operating system refused, as "file: reason." without its number; our own sentences stay as they are."""
+    if error.filename is None or not error.strerror:
+        return str(error)
+    files = [str(name) for name in (error.filename, error.filename2) if name is not None]
+    return f"{' to '.join(files)}: {error.strerror[0].lower()}{error.strerror[1:]}."
 
 
 def _status_of_named_error(error: Exception) -> int | None:
@@ -157,6 +168,8 @@ def check(
     from experiment_app.balance import what_participant_sees
     from experiment_app.check import checked_study, design_picture, summary, text_notes
 
+    if picture is not None and picture.suffix.lower() != ".png":
+        raise UsageError(f"--picture {picture}: the picture is a PNG; let its name end in .png, as balance.png.")
     if participant_number is not None and participant_number < 1:
         raise UsageError(f"--participant-number {participant_number}: numbers of arrival begin at 1.")
     file = checked_study(study)

@@ -67,6 +67,9 @@ def console(
     run = newest_run(folder, participant)
     watching = Watching(run)
     if ask_for is not None:
+        ended = watching.look().ended
+        if ended:
+            raise UsageError(f"participant {run.participant}'s run is not going on ({ended}); nothing was asked of it.")
         ask(run.folder, ask_for)
         out.print(f"Asked the run of participant {run.participant} to {ask_for}.", markup=False)
     elif once:

@@ -253,5 +253,7 @@ def _gait(actor, speed: float | None, step_frequency: float | None) -> tuple[flo
 
 
 def _refuse_missing(path: Path) -> None:
+    if path.is_dir():
+        raise UsageError(f"{path} is a folder; name a motion file in it.")
     if not path.is_file():
         raise UsageError(f"there is no file {path}.")

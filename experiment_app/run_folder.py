@@ -149,8 +149,9 @@ def journal_lines(path: Path) -> tuple[tuple[dict[str, Any], ...], int]:
         except (DamagedLineError, UnicodeDecodeError) as error:
             if number >= len(parts) - 1 and not any(parts[number:]):
                 return tuple(lines), len(raw) - len(b"\n".join(parts[: number - 1])) - (number > 1)
+            why = "the line is not UTF-8; it was altered" if isinstance(error, UnicodeDecodeError) else error
             raise UsageError(
-                f"{path}: line {number}: {error}. Restore the file from a copy, or start a new run with --new-run."
+                f"{path}: line {number}: {why}. Restore the file from a copy, or start a new run with --new-run."
             ) from None
         if number == len(parts):  # a whole line without its newline was still being written
             lines.pop()

@@ -103,7 +103,7 @@ def parse_study(name: str, text: str) -> StudyFile:
     """The study of a text; `name` is used in messages only. Raises StudyFileError."""
     document = _load_yaml(name, text)
     if not isinstance(document, dict):
-        found = "empty" if document is None else f"a {type(document).__name__}"
+        found = "empty" if document is None else "a list" if isinstance(document, list) else "one value without keys"
         message = f"the file is {found}; a study file holds keys such as study, participants, factors, task"
         raise StudyFileError(name, [Mistake((), message)])
     try:
@@ -198,6 +198,8 @@ def _explain(error: Any, document: Any) -> Mistake:
         if len(expected) > 160:
             expected = "the names of keys, as left, right, enter, space, a, 1"
         return Mistake(where, f"{shown} is not allowed; allowed: {expected}{hint}")
+    if kind == "string_pattern_mismatch" and where[-1:] == ("variation",):
+        return Mistake(where, f"{shown} does not fit; write 1:1 to 1:1000 (walkers per motion), or 1")
     if kind == "string_pattern_mismatch":
         return Mistake(where, f"{shown} does not fit; letters, digits and _ only, starting with a letter")
     if kind in ("too_short", "too_long"):

@@ -21,6 +21,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from stimuli.importing.errors import ImportingError
+from stimuli.motion_files.yaml_reasons import yaml_reason
 
 SEXES = {"female": "F", "woman": "F", "f": "F", "male": "M", "man": "M", "m": "M"}
 RANGES = {"height": (1.0, 2.3, "m"), "weight": (20.0, 250.0, "kg"), "age": (5.0, 110.0, "years")}
@@ -46,12 +47,15 @@ class Description:
 def read_description(folder: Path) -> Description:
     """The description in a folder's actor.yaml. Raises ImportingError naming what is missing or wrong."""
     path = folder / "actor.yaml"
+    if not folder.is_dir():
+        found = "is a file" if folder.exists() else "does not exist"
+        raise ImportingError(f"{folder} {found}; name the folder with one person's clips and actor.yaml")
     if not path.is_file():
         raise ImportingError(f"{path} is missing; it says who was captured: {', '.join(KEYS[:-3])}")
     try:
         content = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
     except (YAMLError, OSError, ValueError) as error:
-        raise ImportingError(f"{path} cannot be read as YAML ({' '.join(str(error).split())[:160]})") from error
+        raise ImportingError(f"{path}{yaml_reason(error)}") from error
     if not isinstance(content, dict):
         raise ImportingError(f"{path} is no list of settings; write e.g. height: 1.72")
     unknown = [str(key) for key in content if key not in KEYS]

@@ -112,7 +112,9 @@ def read_style(name: str) -> Style:
 
 def store_style(style: Style, replace_old: bool = False) -> Path:
     """Keeps a captured style in the user's library. Raises MethodError for a name it cannot have."""
-    if not NAME.fullmatch(style.name) or style.name in default_styles():
+    if style.name in default_styles():
+        raise MethodError(f"{style.name} is a style that comes with gaitlab; choose another name, as lab7_{style.name}")
+    if not NAME.fullmatch(style.name):
         raise MethodError(f"{style.name!r} is no name for a new style; use letters, digits, - and _, as lab7_sad")
     if style.name in imported_styles() and not replace_old:
         raise MethodError(f"there is a style {style.name} already; choose another name, or say --replace")

@@ -19,6 +19,7 @@ from ruamel.yaml.error import YAMLError
 
 from stimuli.motion_files.axes import LETTERS
 from stimuli.motion_files.errors import MotionFileError
+from stimuli.motion_files.yaml_reasons import yaml_reason
 from stimuli.skeleton import JOINTS
 
 KEYS = ("unit_to_m", "up", "rate", "skip_frames", "animation", "roles")
@@ -48,8 +49,7 @@ def _load(path: Path) -> dict[str, Any]:
     try:
         content = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
     except (YAMLError, OSError, ValueError) as error:
-        reason = " ".join(str(error).split())[:160]
-        raise MotionFileError(f"{path}: cannot be read as YAML ({reason})") from error
+        raise MotionFileError(f"{path}{yaml_reason(error)}") from error
     if content is None:
         return {}
     if not isinstance(content, dict):

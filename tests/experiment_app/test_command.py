@@ -49,6 +49,12 @@ def test_the_version_is_the_projects():
         ("actor: [F1, F2, M1, M2]  ", "colour: [red, blue]\n  actor: [F1, F2, M1, M2]", "colour changes nothing"),
         ("keys: {lower: left, raise: right,", "keys: {lower: f, raise: j,", ""),
         ("Hold {lower} for", "Hold ← for", ""),
+        (
+            "Hold {lower} for",
+            "Hold {lwer} for",
+            "{lwer} in the instructions is no key of the task and is shown as it is",
+        ),
+        ("Hold {raise} for", "Hold {raise for", "did you mean {raise}?"),
         ("language: en", "language: fr", "the buttons and hints are English"),
         (
             "There is no right or wrong answer",
@@ -118,6 +124,8 @@ def test_check_refuses_a_wrong_study_with_its_place_and_status_2(tmp_path, capfd
         ["run", "walk_ratio"],
         ["simulate", "walk_ratio", "--participants", "0"],
         ["simulate", "walk_ratio", "--participants", "many"],
+        ["check", "walk_ratio", "--picture", "balance.xyz"],
+        ["check", "walk_ratio", "--picture", "."],
     ],
 )
 def test_wrong_usage_is_status_2_and_a_sentence(arguments, capfd):

@@ -1,0 +1,114 @@
+"""What a careless hand gets: one sentence with the place and the way out, the right status, nothing overwritten."""
+
+import pytest
+
+from experiment_app.command import run
+from experiment_app.run_folder import participant_runs
+from stimuli.methods.errors import MethodError
+from stimuli.methods.styles import default_styles, store_style
+from tests.experiment_app.sessions import opened, play
+
+DESCRIPTION = "sex: male\nheight: 1.65\nweight: 65\nage: 30\n"
+
+
+def refused(arguments, status, capfd) -> str:
+    assert run([str(word) for word in arguments]) == status
+    return " ".join(capfd.readouterr().err.split())
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("hello", "the file is one value without keys"),
+        ("- a\n- b\n", "the file is a list"),
+    ],
+)
+def test_a_study_file_that_holds_no_keys_is_told_without_the_words_of_a_program(tmp_path, capfd, text, says):
+    (tmp_path / "study.yaml").write_text(text)
+    assert f"study.yaml:1:1: {says}; a study file holds keys such as" in refused(
+        ["check", tmp_path / "study.yaml"], 2, capfd
+    )
+
+
+def test_a_mistyped_variation_of_a_crowd_is_told_what_to_write(tmp_path, capfd):
+    assert run(["copy", "crowd_variety", str(tmp_path / "mine.yaml")]) == 0
+    text = (tmp_path / "mine.yaml").read_text(encoding="utf-8")
+    (tmp_path / "mine.yaml").write_text(text.replace('variation: "1:1"', 'variation: "1:x"', 1), encoding="utf-8")
+    assert "'1:x' does not fit; write 1:1 to 1:1000" in refused(["check", tmp_path / "mine.yaml"], 2, capfd)
+
+
+def test_a_folder_in_place_of_a_clip_is_called_a_folder(tmp_path, capfd):
+    assert f"{tmp_path} is a folder; name a motion file in it." in refused(["clip", tmp_path], 2, capfd)
+
+
+@pytest.mark.parametrize(
+    ("description", "says"),
+    [
+        (DESCRIPTION + "age: 31\n", "actor.yaml, line 5: age is there twice; keep one of the two"),
+        ("\t" + DESCRIPTION, "actor.yaml, line 1: a tab cannot indent or begin a value in YAML; use spaces"),
+        (DESCRIPTION + "licence: [CC\n", "actor.yaml, line 6: not valid YAML"),
+    ],
+)
+def test_a_description_that_is_no_yaml_is_told_with_its_line(tmp_path, capfd, description, says):
+    (tmp_path / "actor.yaml").write_text(description)
+    assert says in refused(["actor", "import", tmp_path, "--name", "A9"], 2, capfd)
+
+
+def test_a_folder_of_captures_that_is_not_there_or_a_file_is_told_as_such(tmp_path, capfd):
+    (tmp_path / "walk.bvh").write_text("HIERARCHY")
+    assert "walk.bvh is a file; name the folder" in refused(
+        ["actor", "import", tmp_path / "walk.bvh", "--name", "A9"], 2, capfd
+    )
+    assert "none does not exist; name the folder" in refused(
+        ["actor", "import", tmp_path / "none", "--name", "A9"], 2, capfd
+    )
+
+
+def test_the_name_of_a_default_style_is_refused_as_such():
+    with pytest.raises(MethodError, match="sad is a style that comes with gaitlab; choose another name"):
+        store_style(default_styles()["sad"])
+
+
+def test_a_report_is_never_written_among_the_journals(tmp_path, capfd):
+    study = tmp_path / "walk_ratio"
+    play(opened(tmp_path))
+    before = sorted(study.rglob("*"))
+    for place in ("sourcedata", "sourcedata/sub-P02", "sourcedata/sub-P01/run-1"):
+        assert "never among the journals" in refused(["analyse", study, "--out", study / place], 1, capfd)
+    assert sorted(study.rglob("*")) == before
+
+
+def test_a_run_that_has_ended_is_asked_nothing(tmp_path, capfd):
+    play(opened(tmp_path))
+    (finished,) = participant_runs(tmp_path, "walk_ratio", "P01")
+    said = refused(["console", tmp_path / "walk_ratio", "--ask", "stop"], 2, capfd)
+    assert "participant P01's run is not going on (finished); nothing was asked of it" in said
+    assert not (finished.folder / "console.txt").exists()
+
+
+def test_bytes_that_are_no_text_are_told_as_an_altered_line(tmp_path, capfd):
+    play(opened(tmp_path))
+    (finished,) = participant_runs(tmp_path, "walk_ratio", "P01")
+    lines = finished.journal.read_bytes().split(b"\n")
+    finished.journal.write_bytes(b"\n".join([lines[0], b"\xaf" + lines[1], *lines[2:]]))
+    study = tmp_path / "walk_ratio"
+    for arguments, status in ((["analyse", study], 1), (["console", study, "--once"], 2)):
+        said = refused(arguments, status, capfd)
+        assert "line 2" in said
+        assert "the line is not UTF-8; it was altered" in said
+
+
+def test_a_journal_without_its_header_is_told_with_the_way_out(tmp_path, capfd):
+    play(opened(tmp_path))
+    (finished,) = participant_runs(tmp_path, "walk_ratio", "P01")
+    finished.journal.write_bytes(b"")
+    assert "move its run folder out of sourcedata" in refused(["analyse", tmp_path / "walk_ratio"], 1, capfd)
+
+
+def test_what_the_system_refuses_is_the_file_and_the_reason_without_a_number(tmp_path, capfd):
+    play(opened(tmp_path))
+    (finished,) = participant_runs(tmp_path, "walk_ratio", "P01")
+    finished.journal.unlink()
+    finished.journal.mkdir()
+    said = refused(["analyse", tmp_path / "walk_ratio"], 1, capfd)
+    assert said == f"gaitlab: {finished.journal}: is a directory."
