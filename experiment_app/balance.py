@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
+from protocols.adaptive import begin_tracks
 from protocols.assignment import counts, group_of
 from protocols.design import default_seed, make_trials, square_parts, square_row, square_rows
 from protocols.order import AdaptiveOrder
 from protocols.plan import QuestionsStep, TrialStep, make_plan
+from protocols.staircase import Staircase
 from protocols.study import Level, Study
 
 FEW = 12
@@ -23,13 +25,20 @@ def order_in_words(study: Study) -> str:
     order = study.order
     if isinstance(order, AdaptiveOrder):
         rule = order.rule.kind.replace("quest_plus", "QUEST+").replace("_", " ")
-        return f"adaptive order: {order.of} placed by {rule}, yes where {order.yes}"
+        return f"adaptive order: {order.of} placed by {rule}, yes where {order.yes}{_settling(study)}"
     words = [f"{order.kind.replace('_', ' ')}{' of ' + ' x '.join(order.of) if order.of else ''} order"]
     words += [f"at most {n} in a row with the same {factor}" for factor, n in order.at_most_in_a_row.items()]
     words += [f"the same {factor} at least {n} trials apart" for factor, n in order.at_least_apart.items()]
     if order.repeats_at_least_apart:
         words.append(f"repeats at least {order.repeats_at_least_apart} trials apart")
     return ", ".join(words)
+
+
+def _settling(study: Study) -> str:
+    """Where the study's staircases settle, as half a sentence; "" where that is not known, as of QUEST+."""
+    track = begin_tracks(study)[1]
+    share = track.settles_at if isinstance(track, Staircase) else None
+    return "" if share is None else f", settling at {100.0 * share:.0f} % yes"
 
 
 def balance(study: Study) -> list[str]:

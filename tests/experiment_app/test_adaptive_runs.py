@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from experiment_app.balance import order_in_words
 from experiment_app.run_folder import journal_lines
 from protocols.adaptive import after_response, begin_tracks
 from protocols.consistency import inconsistencies
@@ -41,6 +42,14 @@ def adaptive(rule: str) -> StudyFile:
     )
     assert inconsistencies(file.study) == []
     return file
+
+
+@pytest.mark.parametrize(
+    ("rule", "settling"),  # Levitt (1971), table I: 70.7 %; Kaernbach (1991), equation 1: 2 / (2 + 1)
+    [("staircase", ", settling at 71 % yes"), ("weighted", ", settling at 67 % yes"), ("quest_plus", "")],
+)
+def test_check_says_where_a_staircase_settles(rule, settling):
+    assert order_in_words(adaptive(rule).study).endswith(f"yes where walk_ratio >= 0.006{settling}")
 
 
 def trials(run):
