@@ -40,15 +40,7 @@ class Choice(PairPart):
     original: Name | None = Field(
         None, description="The alternative that choosing another is a confusion of; none if left out."
     )
-    sides: Literal["balanced", "as_written"] = Field(
-        "balanced", description="balanced: every alternative equally often on either side, by the run's seed."
-    )
     keys: ChoiceKeys = ChoiceKeys()
-
-    @property
-    def balanced(self) -> bool:
-        """True when the places of the alternatives are balanced over trials."""
-        return self.sides == "balanced"
 
     @property
     def recorded(self) -> dict[str, tuple[str, ...] | None]:

@@ -43,6 +43,9 @@ class PairPart(TaskPart):
     views: int | None = Field(
         1, strict=True, ge=1, le=100, description="How often the walks may be seen; null: as often as wanted."
     )
+    sides: Literal["balanced", "as_written"] = Field(
+        "balanced", description="balanced: every alternative equally often on either side, by the run's seed."
+    )
     minimum_looking_time: float = Field(0.0, strict=True, ge=0.0, le=60.0, description="s before an answer counts.")
 
     @classmethod
@@ -59,6 +62,11 @@ class PairPart(TaskPart):
     def asked(self) -> str:
         """The question under the walks."""
         return self.question
+
+    @property
+    def balanced(self) -> bool:
+        """True when the places of the alternatives are balanced over trials."""
+        return self.sides == "balanced"
 
     @property
     def showing(self) -> Showing:

@@ -61,11 +61,6 @@ class Rating(PairPart):
     keys: RatingKeys = RatingKeys()
 
     @property
-    def balanced(self) -> bool:
-        """True when the places of the alternatives are balanced over trials."""
-        return self.sides == "balanced"
-
-    @property
     def key_part(self) -> TaskKeys:
         """The task's keys."""
         return self.keys
