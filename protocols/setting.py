@@ -149,8 +149,11 @@ class SettingsPart(Part, ABC):
         """Field to the type of its values, for every field that is a setting."""
 
     def settings(self, place: Place) -> Iterator[Given]:
-        """Every setting that is given, with its place under `place`."""
+        """Every setting that is given, also in parts of this part, with its place under `place`."""
         for name, kind in self.takes().items():
             value = getattr(self, name)
             if value is not None:
                 yield value, (*place, name), kind
+        for name, value in self:
+            if isinstance(value, SettingsPart):
+                yield from value.settings((*place, name))

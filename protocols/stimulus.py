@@ -5,20 +5,18 @@ Names of actors, bodies and styles are only names here; knows no motion.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, Tag
 
 from protocols.crowd_part import CrowdChange, CrowdOf, CrowdPart
-from protocols.mistake import Place
 from protocols.parts import Level, Number, Speed, StepFrequency, Text
 from protocols.setting import (
     CONSTANT,
     AsFactor,
     AsTable,
-    Given,
     NameSetting,
     NumberSetting,
     SettingsPart,
@@ -110,14 +108,6 @@ class Alternative(SettingsPart):
         """Field to the type of its values."""
         return {"actor": Text, "body": Text, "speed": Speed, "step_frequency": StepFrequency}
 
-    def settings(self, place: Place) -> Iterator[Given]:
-        """Every setting that is given, also of the way of making and of the crowd."""
-        yield from super().settings(place)
-        if self.making is not None:
-            yield from self.making.settings((*place, "making"))
-        if self.crowd is not None:
-            yield from self.crowd.settings((*place, "crowd"))
-
 
 class Stimulus(SettingsPart, Appearance):
     """What walks: each value is a constant, `$factor` (its level in the trial) or a table by a factor."""
@@ -132,14 +122,6 @@ class Stimulus(SettingsPart, Appearance):
     def takes(cls) -> dict[str, Any]:
         """Field to the type of its values."""
         return {"actor": Text, "speed": Speed, "body": Text}
-
-    def settings(self, place: Place) -> Iterator[Given]:
-        """Every setting that is given, also of the way of making and of the crowd."""
-        yield from super().settings(place)
-        if self.making is not None:
-            yield from self.making.settings((*place, "making"))
-        if self.crowd is not None:
-            yield from self.crowd.settings((*place, "crowd"))
 
     def walk(self, levels: Mapping[str, Level], alternative: Alternative | None = None) -> Walk:
         """The walk of a trial with these levels, or an alternative's: what it leaves out is as in the stimulus."""
