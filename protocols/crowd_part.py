@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from random import Random
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, Tag
+from pydantic import BeforeValidator, Field
 
 from protocols.parts import Level
-from protocols.setting import CONSTANT, AsFactor, AsTable, SettingsPart, by_form, value_of
+from protocols.setting import SettingOf, SettingsPart, value_of
 
 Palette = Literal["varied", "equal_luminance"]
 Size = Annotated[int, Field(strict=True, ge=2, le=4000)]
@@ -18,9 +18,9 @@ Variation = Annotated[
     str, BeforeValidator(lambda value: str(value)), Field(pattern=r"^1(:([1-9][0-9]{0,2}|1000))?$", max_length=6)
 ]
 
-SizeSetting = Annotated[AsFactor | AsTable | Annotated[Size, Tag(CONSTANT)], by_form]
-VariationSetting = Annotated[AsFactor | AsTable | Annotated[Variation, Tag(CONSTANT)], by_form]
-PaletteSetting = Annotated[AsFactor | AsTable | Annotated[Palette, Tag(CONSTANT)], by_form]
+SizeSetting = SettingOf[Size]
+VariationSetting = SettingOf[Variation]
+PaletteSetting = SettingOf[Palette]
 
 TAKES: dict[str, Any] = {"size": Size, "variation": Variation, "palette": Palette}
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, TypeAdapter, ValidationError
 
@@ -38,19 +38,22 @@ def _one_factor(table: Any) -> Any:
 
 
 Table = Annotated[dict[str, dict[Level, Any]], BeforeValidator(_one_factor)]
-by_form = Discriminator(kind_of)
-AsFactor = Annotated[Reference, Tag(FACTOR)]
-AsTable = Annotated[Table, Tag(TABLE)]
+T = TypeVar("T")
+SettingOf = Annotated[
+    Annotated[Reference, Tag(FACTOR)] | Annotated[Table, Tag(TABLE)] | Annotated[T, Tag(CONSTANT)],
+    Discriminator(kind_of),
+]
+"""A setting whose values are of type T: one of them, `$factor`, or a table."""
 
 Setting = str | float | int | dict[str, dict[Level, Any]]
-NameSetting = Annotated[AsFactor | AsTable | Annotated[Text, Tag(CONSTANT)], by_form]
-SpeedSetting = Annotated[AsFactor | AsTable | Annotated[Speed, Tag(CONSTANT)], by_form]
+NameSetting = SettingOf[Text]
+SpeedSetting = SettingOf[Speed]
 Probability = Annotated[float, Field(strict=True, ge=0.0, le=1.0)]
 Seconds = Annotated[float, Field(strict=True, gt=0.0, le=600.0)]
-NumberSetting = Annotated[AsFactor | AsTable | Annotated[Number, Tag(CONSTANT)], by_form]
-ProbabilitySetting = Annotated[AsFactor | AsTable | Annotated[Probability, Tag(CONSTANT)], by_form]
-SecondsSetting = Annotated[AsFactor | AsTable | Annotated[Seconds, Tag(CONSTANT)], by_form]
-StepFrequencySetting = Annotated[AsFactor | AsTable | Annotated[StepFrequency, Tag(CONSTANT)], by_form]
+NumberSetting = SettingOf[Number]
+ProbabilitySetting = SettingOf[Probability]
+SecondsSetting = SettingOf[Seconds]
+StepFrequencySetting = SettingOf[StepFrequency]
 
 
 def value_of(setting: Any, levels: Mapping[str, Level]) -> Any:

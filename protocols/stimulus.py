@@ -9,20 +9,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, Tag
+from pydantic import Field
 
 from protocols.crowd_part import CrowdChange, CrowdOf, CrowdPart
 from protocols.parts import Level, Number, Speed, StepFrequency, Text
 from protocols.setting import (
-    CONSTANT,
-    AsFactor,
-    AsTable,
     NameSetting,
     NumberSetting,
+    SettingOf,
     SettingsPart,
     SpeedSetting,
     StepFrequencySetting,
-    by_form,
     value_of,
 )
 from protocols.viewing import Appearance
@@ -40,7 +37,7 @@ WalkRatio = Annotated[float, Field(strict=True, gt=0.0, lt=0.05)]
 class MakingPart(SettingsPart):
     """How a walk is made out of captured ones; each value is a constant, `$factor` or a table by a factor."""
 
-    method: Annotated[AsFactor | AsTable | Annotated[Method, Tag(CONSTANT)], by_form] = Field(
+    method: SettingOf[Method] = Field(
         "captured", description="captured: the actor's own walk at that speed. The others are in docs/methods.md."
     )
     source_speed: SpeedSetting | None = Field(
@@ -48,29 +45,19 @@ class MakingPart(SettingsPart):
         description="m/s of the captured walk it is made from; left out, the nearest other captured speed (timewarp, "
         "poulaine), the two around the shown speed (blend, fourier) or all others (pca).",
     )
-    points: Annotated[AsFactor | AsTable | Annotated[Points, Tag(CONSTANT)], by_form] = Field(
-        5, description="Control points of a poulaine: 4 (E, V, I, A) or 5 (and M)."
-    )
-    interpolation: Annotated[AsFactor | AsTable | Annotated[Interpolation, Tag(CONSTANT)], by_form] = Field(
-        "hermite", description="Of a poulaine between its points."
-    )
-    harmonics: Annotated[AsFactor | AsTable | Annotated[Harmonics, Tag(CONSTANT)], by_form] = Field(
-        2, description="Of a Fourier walk; Tilmanne and Dutoit used 2."
-    )
+    points: SettingOf[Points] = Field(5, description="Control points of a poulaine: 4 (E, V, I, A) or 5 (and M).")
+    interpolation: SettingOf[Interpolation] = Field("hermite", description="Of a poulaine between its points.")
+    harmonics: SettingOf[Harmonics] = Field(2, description="Of a Fourier walk; Tilmanne and Dutoit used 2.")
     style: NameSetting | None = Field(None, description="A walking style instead of the actor's own way.")
     share: NumberSetting = Field(
         1.0, description="Of the way from the actor's own walk (0) to the style (1), and beyond; fourier only."
     )
-    table: Annotated[AsFactor | AsTable | Annotated[Regression, Tag(CONSTANT)], by_form] = Field(
-        "normalised", description="By which a poulaine is edited."
-    )
-    height: Annotated[AsFactor | AsTable | Annotated[Height, Tag(CONSTANT)], by_form] | None = Field(
+    table: SettingOf[Regression] = Field("normalised", description="By which a poulaine is edited.")
+    height: SettingOf[Height] | None = Field(
         None, description="m, of the person a walk is edited towards (poulaine, pca)."
     )
-    sex: Annotated[AsFactor | AsTable | Annotated[Sex, Tag(CONSTANT)], by_form] | None = Field(
-        None, description="Of the person a poulaine is edited towards."
-    )
-    walk_ratio: Annotated[AsFactor | AsTable | Annotated[WalkRatio, Tag(CONSTANT)], by_form] | None = Field(
+    sex: SettingOf[Sex] | None = Field(None, description="Of the person a poulaine is edited towards.")
+    walk_ratio: SettingOf[WalkRatio] | None = Field(
         None, description="m·min that a poulaine is edited towards at its own speed."
     )
 
