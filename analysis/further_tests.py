@@ -24,10 +24,9 @@ from analysis.linear_regression import regression, regression_diagnostics
 from analysis.plan import AnalysisPlan
 from analysis.plan_parts import EquivalencePlan, MixedModelPlan, RankTransformPlan, RegressionPlan
 from analysis.repeated_measures import anova_of_cells
+from analysis.results import ALPHA
 from analysis.t_statistics import shapiro
 from analysis.track_tests import track_tests
-
-ALPHA = 0.05
 
 
 def planned_tests(plan: AnalysisPlan) -> Iterator[tuple[str, Callable[[pd.DataFrame], FurtherTest]]]:

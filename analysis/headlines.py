@@ -7,7 +7,7 @@ import math
 import pandas as pd
 
 from analysis.apa import anova_sentence, effect_name, number, p_value, regression_sentence, t_sentence
-from analysis.further_tests import FurtherTest
+from analysis.further_test import FurtherTest
 from analysis.results import ALPHA, PlannedResults, unit_decimals
 
 MANY = 12  # pairs that are no longer told one by one

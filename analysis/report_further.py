@@ -9,7 +9,7 @@ import pandas as pd
 
 from analysis import apa
 from analysis.drawing import DrawnFigure
-from analysis.further_tests import FurtherTest
+from analysis.further_test import FurtherTest
 from analysis.markup import Markup, element, join, table, text
 from analysis.report_cells import (
     Columns,

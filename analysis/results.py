@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import pandas as pd
 
 from analysis.cells import CellMeans
-from analysis.further_tests import FurtherTest
+from analysis.further_test import FurtherTest
 from analysis.journal import RecordedStudy
 from analysis.plan import AnalysisPlan
 from analysis.trials import used_trials

@@ -14,11 +14,11 @@ from analysis.method_comparison import Comparison, ComparisonReport, MethodRow, 
 from analysis.method_figures import Film, PointCloud, Rebuilt
 from experiment_app.errors import UsageError
 from stimuli.actors import ActorError, load_actor
-from stimuli.cycle import Cycle, extract_cycle
+from stimuli.cycle import Cycle, cycle_positions, extract_cycle
 from stimuli.events import GaitError
 from stimuli.methods.actor_walks import actor_speeds, actor_walks
 from stimuli.methods.comparison import Compared, compared
-from stimuli.methods.delivery import delivered, world_pose
+from stimuli.methods.delivery import delivered
 from stimuli.methods.fourier import fourier_walk, variance_kept
 from stimuli.methods.making import MethodError, leg_length
 from stimuli.methods.pca import PcaWalk, pca_walk
@@ -244,7 +244,7 @@ def _six_ways(walks: Sequence[PersonsWalk]) -> list[Rebuilt]:
 
 def _film(row: Compared) -> Film:
     cycle = row.cycle
-    _, positions = world_pose(cycle)
+    positions = cycle_positions(cycle)
     frames = np.round(np.arange(FRAMES) * len(positions) / FRAMES).astype(int)
     flat = positions[frames][..., [2, 1]]
     pairs = [(joint, parent) for joint, parent in enumerate(cycle.parents) if parent >= 0]

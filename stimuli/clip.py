@@ -106,28 +106,13 @@ class Clip:
         return np.arange(self.frame_count) / self.rate
 
 
-def world_rotations(clip: Clip) -> Floats:
-    """(T, J, 4): rotation of every joint in the world (Y up), relative to the zero-rotation pose."""
-    return _forward(clip)[0]
-
-
 def world_positions(clip: Clip) -> Floats:
     """(T, J, 3) m: place of every joint in the world (Y up; the ground need not be at 0)."""
-    return _forward(clip)[1]
+    return world_pose(clip)[1]
 
 
 def world_pose(clip: Clip) -> tuple[Floats, Floats]:
-    """World rotations (T, J, 4) and world positions (T, J, 3) m, in one pass."""
-    return _forward(clip)
-
-
-def cut(clip: Clip, first: int, end: int) -> Clip:
-    """The frames first, first + 1, ... end - 1 of a clip, counted as in a Python slice."""
-    chosen = slice(first, end)
-    return replace(clip, translations=clip.translations[chosen], rotations=clip.rotations[chosen])
-
-
-def _forward(clip: Clip) -> tuple[Floats, Floats]:
+    """World rotations (T, J, 4), relative to the zero-rotation pose, and world positions (T, J, 3) m."""
     rotations = np.empty_like(clip.rotations)
     positions = np.empty_like(clip.translations)
     for joint, parent in enumerate(clip.parents):
@@ -139,3 +124,9 @@ def _forward(clip: Clip) -> tuple[Floats, Floats]:
             offset = rotate(rotations[:, parent], clip.translations[:, joint])
             positions[:, joint] = positions[:, parent] + offset
     return rotations, positions
+
+
+def cut(clip: Clip, first: int, end: int) -> Clip:
+    """The frames first, first + 1, ... end - 1 of a clip, counted as in a Python slice."""
+    chosen = slice(first, end)
+    return replace(clip, translations=clip.translations[chosen], rotations=clip.rotations[chosen])

@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 
 from stimuli.bodies import hair_names
+from stimuli.builds import GIRTHS
 from stimuli.crowd_motions import BODIES, Sex
 from stimuli.skeleton import Floats
 
@@ -25,7 +26,7 @@ LOOKS = 120
 """Per sex; 240 in all, as in Niay (2022, section 6.1)."""
 
 CANDIDATES = 6000
-BUILDS = ("slim", "medium", "stout")
+BUILDS = tuple(GIRTHS)
 
 TOPS: tuple[Lab, ...] = (
     (92.0, 0.0, 2.0), (14.0, 0.0, 0.0), (60.0, 0.0, -2.0), (25.0, 8.0, -28.0), (70.0, -8.0, -25.0), (42.0, 56.0, 34.0),

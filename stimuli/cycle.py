@@ -253,8 +253,8 @@ def role_parents(joints: tuple[str, ...]) -> tuple[int, ...]:
     return tuple(parents)
 
 
-def cycle_positions(cycle: Cycle) -> Floats:
-    """(N, R, 3) m: joints of the walker on the spot, by forward kinematics on the cycle's own offsets."""
+def cycle_pose(cycle: Cycle) -> tuple[Floats, Floats]:
+    """World rotations (N, R, 4) and positions (N, R, 3) m of the walker on the spot, on the cycle's own offsets."""
     world = np.empty_like(cycle.rotations)
     positions = np.empty((*cycle.rotations.shape[:2], 3))
     for joint, parent in enumerate(cycle.parents):
@@ -263,7 +263,20 @@ def cycle_positions(cycle: Cycle) -> Floats:
         else:
             world[:, joint] = multiply(world[:, parent], cycle.rotations[:, joint])
             positions[:, joint] = positions[:, parent] + rotate(world[:, parent], cycle.offsets[joint])
-    return positions
+    return world, positions
+
+
+def cycle_positions(cycle: Cycle) -> Floats:
+    """(N, R, 3) m: joints of the walker on the spot."""
+    return cycle_pose(cycle)[1]
+
+
+def leg_length(cycle: Cycle) -> float:
+    """m, thigh and shank, mean of both legs; the cycle has both."""
+    bones = [
+        cycle.offsets[cycle.joints.index(f"{side}{end}")] for side in ("left", "right") for end in ("LowerLeg", "Foot")
+    ]
+    return 0.5 * sum(float(np.linalg.norm(bone)) for bone in bones)
 
 
 def seam_gaps(cycle: Cycle) -> tuple[float, float]:

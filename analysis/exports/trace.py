@@ -15,6 +15,7 @@ from typing import Any
 
 from analysis.errors import AnalysisError
 from analysis.exports.runs import ExportedRun, Timed
+from protocols.setting import value_of
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ def _course(run: ExportedRun, task: Mapping[str, Any], records: Sequence[Timed])
     reach, keys = task.get("range") or {}, run.header["keys"]
     walk = _Setting(
         time=records[0].onset,
-        value=float(setting_in(task["start"], {**(run.header.get("group") or {}), **begun["factors"]})),
+        value=float(value_of(task["start"], {**(run.header.get("group") or {}), **begun["factors"]})),
         low=float(reach.get("minimum", 80.0)),
         high=float(reach.get("maximum", 120.0)),
         rate=float(task.get("rate", 10.0)),
@@ -136,16 +137,6 @@ class _Setting:
                 self._corners.append((round(reached, 6), edge))
             self._value = edge if until >= reached else self._value + slope * (until - since)
         self._corners.append((until, self._value))
-
-
-def setting_in(setting: Any, levels: Mapping[str, Any]) -> Any:
-    """A setting of the study file in a trial: a constant, `$factor`, or a table `{$factor: {level: setting}}`."""
-    if isinstance(setting, str) and setting.startswith("$"):
-        return levels[setting[1:]]
-    if isinstance(setting, Mapping):
-        ((factor, values),) = setting.items()
-        return setting_in(values[levels[factor[1:]]], levels)
-    return setting
 
 
 def sampled(found: Sequence[Course], rate: float) -> tuple[float, list[tuple[Course, float] | None]]:

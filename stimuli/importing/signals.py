@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from stimuli.cycle import Cycle, cycle_positions
+from stimuli.cycle import Cycle, cycle_pose, leg_length
 from stimuli.gait_model import HARMONICS, MIDLINE, MIRROR_SIGN, MODEL_ARM, SIDED, SIGNALS, basis, shifted
-from stimuli.rotations import multiply, rotate, shortest_arc, to_exponential
+from stimuli.rotations import rotate, shortest_arc, to_exponential
 from stimuli.skeleton import Floats
 
 FLAT = (0.15, 0.32)
@@ -26,7 +26,7 @@ def walk_signals(cycle: Cycle) -> Floats:
 
     nan in the rows of what the capture does not hold.
     """
-    world, positions = _world_rotations(cycle), cycle_positions(cycle)
+    world, positions = cycle_pose(cycle)
     leg = leg_length(cycle)
     left, right = (_columns(cycle, world, positions, side, leg) for side in ("left", "right"))
     middle = float(np.mean(right[:, _place("hips_shift")]))
@@ -45,22 +45,6 @@ def evened(sides: Floats) -> Floats:
             if (harmonic % 2 == 0) != (MIRROR_SIGN[index] > 0):
                 even[index, 0 if harmonic == 0 else slice(2 * harmonic - 1, 2 * harmonic + 1)] = 0.0
     return np.stack([even, even])
-
-
-def leg_length(cycle: Cycle) -> float:
-    """m: thigh and shank, mean of both legs."""
-    bones = [
-        cycle.offsets[cycle.joints.index(f"{side}{end}")] for side in ("left", "right") for end in ("LowerLeg", "Foot")
-    ]
-    return 0.5 * sum(float(np.linalg.norm(bone)) for bone in bones)
-
-
-def _world_rotations(cycle: Cycle) -> Floats:
-    world = np.empty_like(cycle.rotations)
-    for joint, parent in enumerate(cycle.parents):
-        own = cycle.rotations[:, joint]
-        world[:, joint] = own if parent < 0 else multiply(world[:, parent], own)
-    return world
 
 
 def _columns(cycle: Cycle, world: Floats, positions: Floats, side: str, leg: float) -> Floats:

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from stimuli.clip import Clip, world_positions
-from stimuli.cycle import Cycle, cycle_and_measures, seam_gaps
+from stimuli.cycle import Cycle, cycle_and_measures, leg_length, seam_gaps
 from stimuli.events import GaitError, GaitMeasures, foot_paths
 from stimuli.gait import Gait
 from stimuli.gait_model import WalkCurves
 from stimuli.importing.errors import ImportingError
-from stimuli.importing.signals import leg_length, walk_signals
+from stimuli.importing.signals import walk_signals
 from stimuli.motion_files.axes import sides_swapped
 from stimuli.motion_files.reading import ENDINGS, read_clip
 from stimuli.motion_files.rest_pose import RestPose

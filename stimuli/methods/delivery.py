@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stimuli.cycle import Cycle, cycle_positions
+from stimuli.cycle import Cycle, cycle_pose
 from stimuli.methods.making import MethodError, resampled
-from stimuli.rotations import angle_between, multiply, rotate
+from stimuli.rotations import angle_between, rotate
 from stimuli.skeleton import Floats
 
 SAMPLES = 256
@@ -47,7 +47,7 @@ class Delivered:
 def delivered(cycle: Cycle) -> Delivered:
     """Measures one cycle. Raises MethodError where it has no feet."""
     fine = resampled(cycle, SAMPLES)
-    world, positions = world_pose(fine)
+    world, positions = cycle_pose(fine)
     step = cycle.stride_time / SAMPLES
     nominal = cycle.stride_length / cycle.stride_time
     backs, slides, standing, knees = [], [], [], []
@@ -119,12 +119,3 @@ def _pivot_steps(points: Floats, samples: np.ndarray) -> Floats:
     """(M, 3) m that the lower of heel and ball moves from each of these samples to the next."""
     lower = np.argmin(points[samples, :, 1], axis=1)
     return np.asarray(points[(samples + 1) % len(points), lower] - points[samples, lower])
-
-
-def world_pose(cycle: Cycle) -> tuple[Floats, Floats]:
-    """World rotations (N, R, 4) and positions (N, R, 3) m of the walker on the spot."""
-    world = np.empty_like(cycle.rotations)
-    for joint, parent in enumerate(cycle.parents):
-        local = cycle.rotations[:, joint]
-        world[:, joint] = local if parent < 0 else multiply(world[:, parent], local)
-    return world, cycle_positions(cycle)

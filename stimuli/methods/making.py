@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from stimuli.cycle import Cycle, Provenance
+from stimuli.cycle import leg_length as length_of_legs
 from stimuli.methods.errors import MethodError as MethodError
 from stimuli.rotations import normalise, slerp
 from stimuli.skeleton import Floats
@@ -44,14 +45,11 @@ def bone_lengths(cycle: Cycle) -> Floats:
 
 def leg_length(cycle: Cycle) -> float:
     """m, hip joint to ankle in the rest pose, mean of both legs. Raises MethodError where the cycle has no legs."""
-    lengths = []
-    for side in ("left", "right"):
-        parts = [f"{side}LowerLeg", f"{side}Foot"]
-        missing = [joint for joint in (f"{side}UpperLeg", *parts) if joint not in cycle.joints]
-        if missing:
-            raise MethodError(f"{cycle.provenance.clip} has no {missing[0]}, so its legs cannot be measured")
-        lengths.append(sum(float(np.linalg.norm(cycle.offsets[cycle.joints.index(part)])) for part in parts))
-    return 0.5 * sum(lengths)
+    legs = (f"{side}{bone}" for side in ("left", "right") for bone in ("UpperLeg", "LowerLeg", "Foot"))
+    missing = [joint for joint in legs if joint not in cycle.joints]
+    if missing:
+        raise MethodError(f"{cycle.provenance.clip} has no {missing[0]}, so its legs cannot be measured")
+    return length_of_legs(cycle)
 
 
 def made_by(method: str, description: str, *sources: Cycle) -> Provenance:

@@ -129,7 +129,7 @@ def pca_walk(
     still = standing_posture(cycles[0]) if standing is None else standing
     check_same_skeleton([*cycles, still])
     vectors = [motion_vector(still, legs)] + [motion_vector(cycle, legs) for cycle in cycles]
-    motions = np.array(nearestwhole_turns(vectors))
+    motions = np.array(on_one_branch(vectors))
     mean = motions.mean(axis=0)
     _, sizes, rows = np.linalg.svd((motions - mean).reshape(len(motions), -1), full_matrices=False)
     variance = sizes**2 / np.sum(sizes**2)
@@ -175,7 +175,7 @@ def motion_vector(cycle: Cycle, legs: float) -> Floats:
     return np.concatenate([signals, fine.hips / legs], axis=1)
 
 
-def nearestwhole_turns(vectors: Sequence[Floats]) -> list[Floats]:
+def on_one_branch(vectors: Sequence[Floats]) -> list[Floats]:
     """Motion vectors on one branch of the exponential map: joint by joint nearest to the second, a captured walk."""
     reference = vectors[1][:, :-3].reshape(FRAMES, -1, 3).mean(axis=0)
     result = []

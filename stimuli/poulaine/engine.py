@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stimuli.cycle import Cycle
+from stimuli.cycle import Cycle, cycle_pose
 from stimuli.methods.blend import mixed
-from stimuli.methods.delivery import world_pose
 from stimuli.methods.making import MethodError, leg_length
 from stimuli.poulaine.curve import FIVE, ControlPoints, characteristic_points, poulaine_of
 from stimuli.poulaine.legs import bent, local
@@ -114,7 +113,7 @@ def poulaine_engine(cycle: Cycle, table: str = "normalised", reach: float = 0.5)
     speeds = np.linspace(low, high, STEPS)
     made = [poulaine_to_speed(cycle, float(speed), table) for speed in speeds]
     sinking = np.array([cycle.hips[0, 1] - walk.hips[0, 1] for walk in made])
-    world, positions = world_pose(cycle)
+    world, positions = cycle_pose(cycle)
     return PoulaineEngine(cycle, (found[0], found[1]), np.array(moved), (low, high), sinking, world, positions)
 
 

@@ -11,8 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from stimuli.cycle import Cycle, cycle_positions
-from stimuli.methods.delivery import world_pose
+from stimuli.cycle import Cycle, cycle_pose, cycle_positions
 from stimuli.methods.making import check_speed, leg_length, made_by
 from stimuli.poulaine.curve import FIVE, ControlPoints, PoulaineError, characteristic_points, poulaine_of
 from stimuli.poulaine.legs import bent, local
@@ -110,7 +109,7 @@ def with_paths(cycle: Cycle, paths: Floats) -> Cycle:
     paths: (2, N, 2) m, x and z of the left and the right ankle. The hips rise or sink by a constant so that the
     ankles' lowest place stays where it was.
     """
-    world, positions = world_pose(cycle)
+    world, positions = cycle_pose(cycle)
     rotations = cycle.rotations.copy()
     for side, path in zip(SIDES, paths, strict=True):
         hip, knee, ankle = (cycle.joints.index(f"{side}{part}") for part in ("UpperLeg", "LowerLeg", "Foot"))

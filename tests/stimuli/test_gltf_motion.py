@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stimuli.clip import world_positions, world_rotations
+from stimuli.clip import world_pose, world_positions
 from stimuli.motion_files.errors import MotionFileError
 from stimuli.motion_files.gltf_motion import animation_names, read_gltf_motion
 from stimuli.motion_files.rest_pose import rest_pose
@@ -60,7 +60,7 @@ def written(folder, content):
 @pytest.mark.parametrize(("interpolation", "halfway"), [("LINEAR", 0.5), ("STEP", 0.0)])
 def test_linear_turns_at_constant_speed_and_step_stays(tmp_path, interpolation, halfway):
     clip = read_gltf_motion(written(tmp_path, document(interpolation)), rate=10)
-    angles = angle_between(world_rotations(clip)[:, 0], [0.0, 0.0, 0.0, 1.0])
+    angles = angle_between(world_pose(clip)[0][:, 0], [0.0, 0.0, 0.0, 1.0])
     assert (clip.frame_count, clip.rate) == (11, 10)
     assert angles[5] == pytest.approx(halfway, abs=1e-6)
     assert angles[-1] == pytest.approx(1.0, abs=1e-6)
@@ -68,7 +68,7 @@ def test_linear_turns_at_constant_speed_and_step_stays(tmp_path, interpolation, 
 
 def test_linear_takes_the_shorter_way(tmp_path):
     clip = read_gltf_motion(written(tmp_path, document(values=TURN * [[1], [-1]])), rate=10)
-    assert angle_between(world_rotations(clip)[5, 0], [0.0, 0.0, 0.0, 1.0]) == pytest.approx(0.5, abs=1e-6)
+    assert angle_between(world_pose(clip)[0][5, 0], [0.0, 0.0, 0.0, 1.0]) == pytest.approx(0.5, abs=1e-6)
 
 
 def test_a_cubic_spline_with_flat_tangents_eases_in_and_out(tmp_path):
@@ -77,7 +77,7 @@ def test_a_cubic_spline_with_flat_tangents_eases_in_and_out(tmp_path):
     values = np.stack([zero, TURN[0], zero, zero, TURN[1], zero])
     clip = read_gltf_motion(written(tmp_path, document("CUBICSPLINE", values)), rate=10)
     blend = TURN[0] + 0.028 * (TURN[1] - TURN[0])
-    assert angle_between(world_rotations(clip)[1, 0], blend / np.linalg.norm(blend)) == pytest.approx(0, abs=1e-6)
+    assert angle_between(world_pose(clip)[0][1, 0], blend / np.linalg.norm(blend)) == pytest.approx(0, abs=1e-6)
 
 
 def test_a_child_is_carried_by_its_parent(tmp_path):

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from stimuli.actors import load_actor
+from stimuli.cycle import cycle_positions
 from stimuli.methods.actor_walks import actor_walks
-from stimuli.methods.delivery import delivered, joint_rmse, world_pose
+from stimuli.methods.delivery import delivered, joint_rmse
 from stimuli.methods.frequency_law import GLARDON, INMAN, fitted_law
 from stimuli.methods.making import MethodError
 from stimuli.methods.pca import FRAMES, motion_vector, pca_walk, standing_posture
@@ -106,7 +107,7 @@ def test_standing_is_the_rest_pose_with_hanging_arms(walks):
     arms = [joint.endswith(("Shoulder", "Arm", "Hand")) for joint in still.joints]
     assert np.all(still.rotations[:, np.logical_not(arms), 3] == 1.0)
     assert still.stride_length == 0.0
-    _, places = world_pose(still)
+    places = cycle_positions(still)
     shoulder, hand = (places[0, still.joints.index(f"left{part}")] for part in ("UpperArm", "Hand"))
     assert np.arctan2(hand[0] - shoulder[0], shoulder[1] - hand[1]) < np.radians(20)
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from stimuli.actors import load_actor
-from stimuli.cycle import extract_cycle
+from stimuli.cycle import cycle_pose, extract_cycle
 from stimuli.methods.actor_walks import actor_walk
-from stimuli.methods.delivery import joint_rmse, world_pose
+from stimuli.methods.delivery import joint_rmse
 from stimuli.methods.making import MethodError, leg_length
 from stimuli.motion_files.reading import read_clip
 from stimuli.poulaine.curve import FIVE, FOUR, Poulaine, PoulaineError, characteristic_points, poulaine_of
@@ -162,7 +162,7 @@ def test_the_ankle_comes_to_its_place_and_bones_keep_their_length():
 
 def test_rebuilding_keeps_feet_upper_body_and_gait(walk):
     made = poulaine_walk(walk)
-    before, after = world_pose(walk)[0], world_pose(made)[0]
+    before, after = cycle_pose(walk)[0], cycle_pose(made)[0]
     for joint in ("leftFoot", "rightFoot", "head", "leftHand"):
         place = walk.joints.index(joint)
         assert angle_between(before[:, place], after[:, place]).max() < 1e-6, joint
