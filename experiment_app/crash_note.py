@@ -31,6 +31,11 @@ def crash_note(folder: Path, sitting: int) -> Iterator[None]:
     path.unlink(missing_ok=True)
 
 
+def leave_note(folder: Path, sitting: int, reason: str) -> None:
+    """Writes what the process is about to die of, where no native fault says it."""
+    _path(folder, sitting).write_text(f"{reason}\n", encoding="utf-8")
+
+
 def crash_reason(folder: Path, sitting: int) -> str:
     """What a sitting died of, as "Segmentation fault"; "" when there is no note of a native fault."""
     try:

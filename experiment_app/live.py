@@ -17,7 +17,7 @@ from experiment_app.check import check_names, checked_study, refuse_mistakes
 from experiment_app.console.asking import listening
 from experiment_app.console.status_line import status_line
 from experiment_app.console.watching import watched_so_far
-from experiment_app.crash_note import crash_note
+from experiment_app.crash_note import crash_note, leave_note
 from experiment_app.crowds import plan_of
 from experiment_app.errors import RunError, UsageError
 from experiment_app.gaze.recording import gaze_watched, recording_gaze
@@ -40,6 +40,7 @@ from experiment_app.timing_page import write_certificate
 from experiment_app.triggers import trigger_line, triggering
 from experiment_app.walkers import cast, own_step_frequency
 from experiment_app.windows.desktop import DesktopWindow, Device
+from experiment_app.windows.display_loss import display_loss
 from experiment_app.windows.key_times import Keyboard
 from experiment_app.windows.patch import Corner, Patch
 from protocols import resuming
@@ -128,7 +129,14 @@ def run_live(
                 again=new_run,
             )
         say(f"Participant {participant} is number {opened.participant_number}{_group(opened)}.")
-        sitting = crash_note(opened.run.folder, opened.run.sittings + 1)
+        number = opened.run.sittings + 1
+        sitting = crash_note(opened.run.folder, number)
+        command = f"gaitlab run {study} --participant {participant} --data {data}{' --pilot' if pilot else ''}"
+
+        def last_words(reason: str) -> None:
+            leave_note(opened.run.folder, number, reason)
+            print(f"\ngaitlab: {_early(opened.run, reason, command)}", file=sys.stderr, flush=True)
+
         with (
             sitting,
             opened.journal as journal,
@@ -140,12 +148,12 @@ def run_live(
             ) as told,
             listening(window, opened.run.folder) as heard,
             ending_signals(window.request_end),
+            display_loss(window.request_end, last_words),
             preparing(opened.plan, say),
             without_collection(),
         ):
             session = run_session(begin(opened.plan), heard, recording_gaze(told, gaze))
     _certify(opened.run, say)
-    command = f"gaitlab run {study} --participant {participant} --data {data}{' --pilot' if pilot else ''}"
     return _farewell(opened, command, session.ended, say)
 
 
@@ -268,8 +276,12 @@ def _farewell(opened: OpenRun, again: str, ended: str, say: Callable[[str], None
         say(f"Participant {run.participant} declined; only the refusal is stored.")
         return 0
     why = f"the computer asked it to end, {ended}" if ended.startswith("SIG") else ended
-    message = f"the run ended early ({why}); everything recorded is in {run.journal}. To go on: {again}"
+    message = _early(run, why, again)
     if ended in ("stopped", STOPPED_BY_EXPERIMENTER):
         say(message[0].upper() + message[1:])
         return 1
     raise RunError(message)
+
+
+def _early(run: Run, why: str, again: str) -> str:
+    return f"the run ended early ({why}); everything recorded is in {run.journal}. To go on: {again}"
