@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from cyclopts import App, Parameter
-from rich.console import Console
 
 from experiment_app.errors import UsageError
+from experiment_app.terminal import out
 
-out = Console(highlight=False, emoji=False, soft_wrap=True)
 body_commands = App(name="body", help="Bodies: check a character from another program, import it, list them all.")
 
 File = Annotated[Path, Parameter(help="A skinned humanoid in glTF 2.0: .glb, .gltf or .vrm.")]

@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 from cyclopts import App, Parameter
-from rich.console import Console
 
 from experiment_app.body_commands import body_commands
 from experiment_app.data_commands import console, export, withdraw
 from experiment_app.errors import RunError, UsageError
 from experiment_app.motion_commands import actor_commands, clip
 from experiment_app.style_commands import style_commands
+from experiment_app.terminal import out, problems, say, with_progress
 
 app = App(
     name="gaitlab",
@@ -27,8 +27,6 @@ app = App(
     version_flags=["--version"],
     help_format="plaintext",  # markdown would cost a fifth of a second at every --help
 )
-out = Console(highlight=False, emoji=False, soft_wrap=True)
-problems = Console(stderr=True, highlight=False, emoji=False, soft_wrap=True)
 app.command(clip)
 app.command(actor_commands)
 app.command(body_commands)
@@ -150,7 +148,7 @@ def run_study(
     )  # fmt: skip
     return run_live(
         study, participant, data or Path("pilot" if pilot else "data"), screen=screen, trigger=trigger, lsl=lsl,
-        seed=seed, new_run=new_run, pilot=pilot, resume=resume, ask=_ask, say=_say,
+        seed=seed, new_run=new_run, pilot=pilot, resume=resume, ask=_ask, say=say,
     )  # fmt: skip
 
 
@@ -222,7 +220,7 @@ def simulate(
         raise UsageError(f"--participants {count}: at least 1 is needed.")
     if data == Path("data"):
         raise UsageError("--data data: that is where real participants go; choose another folder, as simulated.")
-    for _ in _with_progress(simulated_runs(file, count, data, seed), count, "Simulating participants"):
+    for _ in with_progress(simulated_runs(file, count, data, seed), count, "Simulating participants"):
         pass
     out.print(f"{count} simulated participants in {data / file.study.study}", markup=False)
     out.print(f"Analyse them with: gaitlab analyse {data / file.study.study} --out report", markup=False)
@@ -303,7 +301,7 @@ def power(
         result = simulate_power(
             file.text, participants or (), experiments=experiments, seed=seed, shard=(int(first), int(last)),
             workers=workers or os.cpu_count() or 1, client=dask_client(dask) if dask else None,
-            progress=lambda parts, count: _with_progress(parts, count, "Simulating experiments"),
+            progress=lambda parts, count: with_progress(parts, count, "Simulating experiments"),
         )  # fmt: skip
     for row in result.table.to_dict("records"):
         name = f"t test of {row['name']}" if row["test"] == "t" else row["name"].replace(":", " x ")
@@ -335,7 +333,7 @@ def demo(
     """
     from experiment_app.demo import run_demo
 
-    return run_demo(study, folder, off_screen=off_screen, say=_say, progress=_with_progress)
+    return run_demo(study, folder, off_screen=off_screen, say=say, progress=with_progress)
 
 
 @app.command
@@ -401,7 +399,7 @@ def film(
     trial = condition_of(read, condition or ())
     count = max(round(seconds * frame_rate), 1)
     scenes = (walking(read, trial, float(number / frame_rate), lod) for number in range(count))
-    frames = _with_progress(film_scenes(scenes, (width, height)), count, "Drawing")
+    frames = with_progress(film_scenes(scenes, (width, height)), count, "Drawing")
     said = write_film(iter(frames), frame_rate, path)
     out.print(f"{path}: {said}", markup=False)
     return 0
@@ -430,9 +428,9 @@ def replay(
     recorded, plan, trials = opened(run, trial, practice)
     if path is not None:
         width, height = _size(size)
-        said = film_trials(plan, trials, path, _frame_rate(rate), (width, height), _with_progress)
+        said = film_trials(plan, trials, path, _frame_rate(rate), (width, height), with_progress)
         out.print(f"{path}: {said}", markup=False)
-    checked = list(_with_progress((check_trial(plan, one) for one in trials), len(trials), "Checking"))
+    checked = list(with_progress((check_trial(plan, one) for one in trials), len(trials), "Checking"))
     for one in checked:
         out.print(one.sentence, markup=False)
     different = [one for one in checked if one.different]
@@ -508,7 +506,7 @@ def compare_methods_command(
 
     if not actors:
         raise UsageError("name at least one actor, as gaitlab compare-methods F1.")
-    report = compare_methods(actors, out_folder, captures, _say, _with_progress)
+    report = compare_methods(actors, out_folder, captures, say, with_progress)
     for sentence in report.headlines:
         out.print(sentence, markup=False)
     for path in report.paths:
@@ -541,10 +539,6 @@ def _version() -> str:
     return version("gaitlab")
 
 
-def _say(sentence: str) -> None:
-    out.print(sentence, markup=False)
-
-
 def _ask(question: str) -> bool:
     """Asks on the terminal; raises UsageError where nobody can answer."""
     if not sys.stdin.isatty():
@@ -553,12 +547,3 @@ def _ask(question: str) -> bool:
         return input(f"{question} [Y/n] ").strip().lower() in ("", "y", "yes")
     except EOFError:
         return False
-
-
-def _with_progress(items, count: int, what: str):  # type: ignore[no-untyped-def]
-    """The items, with a progress bar and the time left while they are being made."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=problems, transient=True) as bar:
-        yield from bar.track(items, total=count, description=what)

@@ -11,9 +11,7 @@ from rich.console import Console
 
 from experiment_app.derived import Derived, note_derived
 from experiment_app.errors import UsageError
-
-out = Console(highlight=False, emoji=False, soft_wrap=True)
-problems = Console(stderr=True, highlight=False, emoji=False, soft_wrap=True)
+from experiment_app.terminal import out, problems, say
 
 StudyFolder = Annotated[Path, Parameter(help="The study's folder of data, as data/walk_ratio.")]
 
@@ -99,7 +97,7 @@ def withdraw(
     if not yes and not _sure(participant):
         out.print("Nothing was changed.", markup=False)
         return 1
-    return 0 if carry_out(plan, lambda made: _make_again(folder, made), _say) else 1
+    return 0 if carry_out(plan, lambda made: _make_again(folder, made), say) else 1
 
 
 def _make_again(folder: Path, made: Derived) -> None:
@@ -130,7 +128,3 @@ def _sure(participant: str) -> bool:
         return input(f"This cannot be undone. Type {participant} to go on: ").strip() == participant
     except EOFError:
         return False
-
-
-def _say(sentence: str) -> None:
-    out.print(sentence, markup=False)

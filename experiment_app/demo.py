@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +20,7 @@ from experiment_app.opening import open_new
 from experiment_app.scene import Scene
 from experiment_app.short_study import short_study
 from experiment_app.simulate import simulate
+from experiment_app.terminal import ShowProgress
 from experiment_app.windows.offscreen import OffscreenWindow
 from protocols.design import default_seed
 from protocols.plan import TrialStep
@@ -37,10 +37,8 @@ FILM_RATE = 25.0
 PARTICIPANTS = 22
 SEED = 2022
 
-Progress = Callable[[Iterator[Any], int, str], Iterator[Any]]
 
-
-def run_demo(name: str, folder: Path, *, off_screen: bool, say: Callable[[str], None], progress: Progress) -> int:
+def run_demo(name: str, folder: Path, *, off_screen: bool, say: Callable[[str], None], progress: ShowProgress) -> int:
     """Runs the demo of a study into a folder that did not exist before, and says where everything is."""
     from analysis.planned import analyse
 

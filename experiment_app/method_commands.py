@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
 
 import numpy as np
 
 from analysis.method_comparison import Comparison, ComparisonReport, MethodRow, RebuildingError, write_report
 from analysis.method_figures import Film, PointCloud, Rebuilt
 from experiment_app.errors import UsageError
+from experiment_app.terminal import ShowProgress, unseen
 from stimuli.actors import ActorError, load_actor
 from stimuli.cycle import Cycle, cycle_positions, extract_cycle
 from stimuli.events import GaitError
@@ -43,24 +43,12 @@ class PersonsWalk:
     cycle: Cycle
 
 
-class Progress(Protocol):
-    """Shows how far a long piece of work is, with the time left."""
-
-    def __call__(self, items: Iterable[Any], count: int, what: str, /) -> Iterable[Any]:
-        """The items, as they are."""
-
-
-def unseen(items: Iterable[Any], count: int, what: str, /) -> Iterable[Any]:
-    """No progress shown."""
-    return items
-
-
 def compare_methods(
     actors: Sequence[str],
     folder: Path,
     captures: Path | None,
     say: Callable[[str], None],
-    progress: Progress = unseen,
+    progress: ShowProgress = unseen,
 ) -> ComparisonReport:
     """Compares the methods on actors (names, or folders of one person's captures) and writes the report.
 
@@ -73,7 +61,7 @@ def compare_methods(
 
 
 def _compared(
-    actors: Sequence[str], folder: Path, captures: Path | None, say: Callable[[str], None], progress: Progress
+    actors: Sequence[str], folder: Path, captures: Path | None, say: Callable[[str], None], progress: ShowProgress
 ) -> ComparisonReport:
     rows: list[Compared] = []
     notes: list[str] = []
@@ -117,7 +105,7 @@ def walks_named(name: str, notes: list[str]) -> list[Cycle]:
     return list(actor_walks(actor, actor_speeds(actor)))
 
 
-def walks_in(folder: Path, notes: list[str], progress: Progress = unseen) -> list[PersonsWalk]:
+def walks_in(folder: Path, notes: list[str], progress: ShowProgress = unseen) -> list[PersonsWalk]:
     """One cycle of every motion file that holds a walk; the person is the file's name up to its first number."""
     if not folder.exists():
         raise UsageError(f"{folder}: there is no such folder of captures.")
@@ -178,7 +166,7 @@ def _rebuilding_walks(
     own: list[PersonsWalk],
     notes: list[str],
     say: Callable[[str], None],
-    progress: Progress,
+    progress: ShowProgress,
 ) -> tuple[list[PersonsWalk], str]:
     if captures is not None:
         return walks_in(captures, notes, progress), f"captures in {captures}"

@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import Annotated
 
 from cyclopts import App, Parameter
-from rich.console import Console
 
 from experiment_app.errors import UsageError
+from experiment_app.terminal import out, progress_bar
 
-out = Console(highlight=False, emoji=False, soft_wrap=True)
 actor_commands = App(name="actor", help="Actors: list, import from captures, check, look at, and take poses of.")
 
 Name = Annotated[str, Parameter(help="Name of the actor, as F1.")]
@@ -196,14 +195,11 @@ def import_actor(
     replace: Annotated[bool, Parameter(negative="", help="Take the place of an actor of that name.")] = False,
 ) -> int:
     """Make an actor of a folder of captured walks; speed and step frequency are found in the clips."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
     from stimuli.actor_library import library_folder
     from stimuli.importing.folder import import_folder
 
     _use(library)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with progress_bar() as bar:
         task = bar.add_task("Reading clips", total=None)
 
         def told(done: int, of: int) -> None:

@@ -6,11 +6,10 @@ from pathlib import Path
 from typing import Annotated
 
 from cyclopts import App, Parameter
-from rich.console import Console
 
 from experiment_app.errors import UsageError
+from experiment_app.terminal import out
 
-out = Console(highlight=False, emoji=False, soft_wrap=True)
 style_commands = App(name="style", help="Styles of walking: list them, import captured ones.")
 
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TypeVar
 
 from experiment_app.errors import UsageError
 from experiment_app.film import Pixels, write_film
@@ -15,10 +14,8 @@ from experiment_app.replay.film import film_length, trial_film
 from experiment_app.replay.frames import replayed_frames
 from experiment_app.replay.recorded import RecordedTrial, recorded_trials
 from experiment_app.run_folder import Run, run_at
+from experiment_app.terminal import ShowProgress
 from protocols.plan import Plan
-
-T = TypeVar("T")
-Progress = Callable[[Iterable[T], int, str], Iterator[T]]
 
 
 @dataclass(frozen=True)
@@ -68,7 +65,7 @@ def check_trial(plan: Plan, trial: RecordedTrial) -> Checked:
 
 
 def film_trials(
-    plan: Plan, trials: list[RecordedTrial], path: Path, rate: Fraction, size: tuple[int, int], progress: Progress
+    plan: Plan, trials: list[RecordedTrial], path: Path, rate: Fraction, size: tuple[int, int], progress: ShowProgress
 ) -> str:
     """Films the trials one after the other into one file, and says what was verified of it."""
 
@@ -77,7 +74,7 @@ def film_trials(
             yield from trial_film(trial, list(replayed_frames(plan, trial)), rate, size)
 
     count = sum(film_length(trial, rate) for trial in trials)
-    return write_film(progress(pictures(), count, "Drawing"), rate, path)
+    return write_film(iter(progress(pictures(), count, "Drawing")), rate, path)
 
 
 def changed_versions(run: Run) -> list[str]:
