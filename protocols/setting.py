@@ -45,7 +45,6 @@ SettingOf = Annotated[
 ]
 """A setting whose values are of type T: one of them, `$factor`, or a table."""
 
-Setting = str | float | int | dict[str, dict[Level, Any]]
 NameSetting = SettingOf[Text]
 SpeedSetting = SettingOf[Speed]
 Probability = Annotated[float, Field(strict=True, ge=0.0, le=1.0)]
