@@ -14,7 +14,7 @@ from typing import Annotated, Literal
 from cyclopts import App, Parameter
 
 from experiment_app.body_commands import body_commands
-from experiment_app.data_commands import console, export, withdraw
+from experiment_app.data_commands import StudyFolder, console, drop_out, export, withdraw
 from experiment_app.errors import RunError, UsageError
 from experiment_app.motion_commands import actor_commands, clip
 from experiment_app.style_commands import style_commands
@@ -33,6 +33,7 @@ app.command(body_commands)
 app.command(style_commands)
 app.command(console)
 app.command(export)
+app.command(drop_out)
 app.command(withdraw)
 
 SHIPPED = sorted(p.name.removesuffix(".yaml") for p in (files("protocols") / "studies").iterdir() if ".yaml" in p.name)
@@ -184,24 +185,6 @@ def check(
     return 0
 
 
-@app.command(name="drop-out")
-def drop_out_command(
-    folder: Annotated[Path, Parameter(help="The study's folder of data, as data/walk_ratio.")],
-    *,
-    participant: Annotated[str, Parameter(help="The ID of who will not come back.")],
-) -> int:
-    """Give back the place of a participant who will not come back; everything recorded stays.
-
-    The next new participant takes the place: its group, its row of the square, its keys.
-    """
-    from experiment_app.dropping_out import drop_out
-
-    run = drop_out(folder, participant)
-    place = run.header["participant_number"]
-    out.print(f"Participant {participant} has dropped out; place {place} is free again.", markup=False)
-    return 0
-
-
 @app.command
 def simulate(
     study: StudyArgument,
@@ -229,7 +212,7 @@ def simulate(
 
 @app.command
 def analyse(
-    folder: Annotated[Path, Parameter(help="The study's folder of data, as data/walk_ratio.")],
+    folder: StudyFolder,
     *,
     out_folder: Annotated[Path, Parameter(name="--out", help="Folder for tables, figures and report.")] = Path(
         "report"

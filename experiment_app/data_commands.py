@@ -1,4 +1,4 @@
-"""The commands about recorded data: export them, watch them grow, and take a participant out of them."""
+"""The commands about recorded data: export them, watch them grow, and note who drops out or withdraws."""
 
 from __future__ import annotations
 
@@ -74,6 +74,23 @@ def console(
         out.print(status(watching.look()), markup=False)
     else:
         show(watching, Console())
+    return 0
+
+
+def drop_out(
+    folder: StudyFolder,
+    *,
+    participant: Annotated[str, Parameter(help="The ID of who will not come back.")],
+) -> int:
+    """Give back the place of a participant who will not come back; everything recorded stays.
+
+    The next new participant takes the place: its group, its row of the square, its keys.
+    """
+    from experiment_app.dropping_out import drop_out as give_place_back
+
+    run = give_place_back(folder, participant)
+    place = run.header["participant_number"]
+    out.print(f"Participant {participant} has dropped out; place {place} is free again.", markup=False)
     return 0
 
 
