@@ -20,7 +20,6 @@ from protocols.consistency import shown_walks
 from protocols.design import default_seed
 from protocols.plan import Plan, make_plan
 from protocols.record import Continued, Header
-from protocols.session import remaining
 from protocols.study import Study
 from protocols.study_file import StudyFile, parse_study
 
@@ -103,7 +102,7 @@ def open_unfinished(run: Run, *, display: Mapping[str, Any]) -> OpenRun:
     header, plan = run.header, recorded_plan(run)
     journal, run, torn = reopen_journal(run)
     journal.write([Continued(0.0, _utc_now(), torn, display, recorded_versions(), run.interruption)])
-    plan = remaining(plan, resuming.again(plan, progress(run)))
+    plan = resuming.remaining(plan, resuming.again(plan, progress(run)))
     return OpenRun(
         run, plan, journal, header["seed"], header["participant_number"], True, header.get("group") or {}, torn
     )

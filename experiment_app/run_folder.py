@@ -17,7 +17,7 @@ from experiment_app.crash_note import crash_reason
 from experiment_app.errors import UsageError
 from protocols.assignment import GIVEN_BACK
 from protocols.record import DamagedLineError, decode_line
-from protocols.session import Progress
+from protocols.resuming import Progress
 
 PARTICIPANT = re.compile(r"[A-Za-z0-9]{1,32}")
 """Participant IDs: letters and digits only, as the labels of BIDS."""

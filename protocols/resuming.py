@@ -1,12 +1,33 @@
-"""What becomes of an interrupted run: whether it may go on, and what of it is done again; no file, no clock."""
+"""What becomes of an interrupted run: whether it may go on, what of it is done again, and what is left of its plan.
+
+Knows no file and no clock; what a journal says has been done is an argument.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
-from protocols.plan import Plan, TextStep, TrialStep
-from protocols.session import Progress
-from protocols.study import Resume
+from protocols.adaptive import Tracks, after_response
+from protocols.plan import Plan, Step, TextStep, TrialStep
+from protocols.study import Resume, TextPage
+
+
+@dataclass(frozen=True)
+class Progress:
+    """What a journal says has already happened in a run.
+
+    left:     ids of the pages left and trials finished.
+    begun:    how often each trial was begun, by step id.
+    consented, finished: whether the participant agreed, and whether the run is over.
+    answers:  (trial number, factors and response) of every finished trial, in order; practice left out.
+    """
+
+    left: frozenset[str] = frozenset()
+    begun: Mapping[str, int] = field(default_factory=dict)
+    consented: bool = False
+    finished: bool = False
+    answers: tuple[tuple[int, Mapping[str, object]], ...] = ()
 
 
 def refusal(resume: Resume, gap: float) -> str:
@@ -61,3 +82,43 @@ def _begun_block(plan: Plan, progress: Progress) -> set[str]:
             return finished
         finished.add(step.id)
     return set()
+
+
+def remaining(plan: Plan, progress: Progress) -> Plan:
+    """The plan without what is done: the same order, the interrupted trial again as its next attempt.
+
+    A page welcomes the participant back and the instructions are shown again. Breaks before the first unfinished
+    trial are not repeated.
+    """
+    left = {step for step in progress.left if not step.startswith("instructions-") or not progress.consented}
+    left |= {"consent"} if progress.consented else set()
+    steps: list[Step] = []
+    for step in plan.steps:
+        if step.id in left or (isinstance(step, TextStep) and step.kind == "break" and not _trials(steps)):
+            continue
+        if isinstance(step, TrialStep):
+            step = replace(step, attempt=progress.begun.get(step.id, 0) + 1)
+        steps.append(step)
+    if not _trials(steps):
+        steps = [step for step in steps if not step.id.startswith("instructions-")]
+    elif progress.consented:
+        following = next((s.trial.number for s in _trials(steps) if not s.trial.practice), plan.total)
+        words = plan.study.words
+        text = words.welcome_back_text.replace("{next}", str(following)).replace("{total}", str(plan.total))
+        steps.insert(0, TextStep("welcome-back", TextPage(title=words.welcome_back, text=text)))
+    return replace(plan, steps=tuple(steps), tracks=_answered(plan, progress))
+
+
+def _answered(plan: Plan, progress: Progress) -> Tracks:
+    """The plan's tracks after the recorded answers, so that the levels go on where they were."""
+    track = {step.trial.number: step.trial.track for step in _trials(list(plan.steps)) if not step.trial.practice}
+    tracks = plan.tracks
+    for number, columns in progress.answers:
+        if f"trial-{number}" not in progress.left:
+            continue  # done again by the study's policy, so its first answer does not count
+        tracks = after_response(plan.study, tracks, track.get(number, 0), columns)
+    return tracks
+
+
+def _trials(steps: list[Step]) -> list[TrialStep]:
+    return [step for step in steps if isinstance(step, TrialStep)]

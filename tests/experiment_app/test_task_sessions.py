@@ -16,7 +16,8 @@ from experiment_app.staging import stage, view_scene
 from protocols.events import Clicked, KeyDown, Shown
 from protocols.plan import TrialStep, make_plan
 from protocols.record import Click, Key, TrialRecord
-from protocols.session import Progress, Session, advance, begin, drained, handle, remaining
+from protocols.resuming import Progress, remaining
+from protocols.session import Session, advance, begin, drained, handle
 from protocols.study_file import parse_study
 from tests.experiment_app.test_loop import Disk, Display
 from tests.protocols.studies import edited, few_choices

@@ -6,7 +6,7 @@ import pytest
 
 from protocols import resuming
 from protocols.plan import TrialStep, make_plan
-from protocols.session import Progress, remaining
+from protocols.resuming import Progress, remaining
 from protocols.study import Resume
 from protocols.study_file import StudyFileError, parse_study
 from tests.protocols.studies import changed

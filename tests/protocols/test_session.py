@@ -10,7 +10,8 @@ from protocols.consistency import inconsistencies
 from protocols.events import Clicked, Closed, FocusLost, KeyDown, KeyUp, Saved, Shown, Typed
 from protocols.plan import TrialStep, make_plan
 from protocols.record import Ended, Key, TrialRecord
-from protocols.session import Interval, Progress, Session, advance, begin, drained, handle, remaining
+from protocols.resuming import Progress, remaining
+from protocols.session import Interval, Session, advance, begin, drained, handle
 from protocols.study_file import parse_study
 from tests.protocols.studies import changed, short
 
