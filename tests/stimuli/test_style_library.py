@@ -49,9 +49,17 @@ def test_a_style_is_replaced_only_when_asked():
     store_style(style(), replace_old=True)
 
 
-@pytest.mark.parametrize("name", ["sad", "../sad", "", "1st"])
-def test_a_name_it_cannot_have_is_refused(name):
-    with pytest.raises(MethodError, match="is no name for a new style"):
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("sad", "sad is a style that comes with gaitlab; choose another name"),
+        ("../sad", "is no name for a new style"),
+        ("", "is no name for a new style"),
+        ("1st", "is no name for a new style"),
+    ],
+)
+def test_a_name_it_cannot_have_is_refused(name, reason):
+    with pytest.raises(MethodError, match=reason):
         store_style(style(name))
     assert imported_styles() == ()
 
