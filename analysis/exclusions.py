@@ -2,47 +2,42 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
-from typing import Any
-
 import pandas as pd
 
+from analysis.answers import answers
 from analysis.columns import label
 from analysis.errors import AnalysisError, listed
-
-_CONDITION = re.compile(r"\s*(\w+)\s*(<=|>=|==|!=|<|>)\s*(.+?)\s*")
-_COMPARE: dict[str, Callable[[Any, Any], Any]] = {
-    "<": lambda a, b: a < b, ">": lambda a, b: a > b, "<=": lambda a, b: a <= b,
-    ">=": lambda a, b: a >= b, "==": lambda a, b: a == b, "!=": lambda a, b: a != b,
-}  # fmt: skip
+from protocols.condition import COMPARISONS, read_condition
 
 
 def matching(trials: pd.DataFrame, where: str) -> pd.Series:
     """Which trials meet a condition such as `late_frames > 5 and response_time < 0.2`.
 
-    A condition compares one column with a number or a word; several are joined by `and`. A missing
-    value meets no condition.
+    A condition compares one column with a number, a word or another column (`chosen == $original`); several are
+    joined by `and`. A missing value meets no condition.
     """
     chosen = pd.Series(True, index=trials.index)
     for part in where.split(" and "):
-        match = _CONDITION.fullmatch(part)
-        if match is None or match[1] not in trials.columns:
+        condition = read_condition(part)
+        if condition is None or condition.column not in trials.columns:
             raise AnalysisError(
                 f"The exclusion {where!r} cannot be read; write a column, a comparison and a value, "
                 f"as `late_frames > 5`. The columns are {listed(map(str, trials.columns), 40)}."
             )
-        column, value = trials[match[1]], match[3].strip("'\"")
+        if condition.value.startswith("$"):
+            chosen &= answers(trials, part) == 1.0
+            continue
+        column, value, compare = trials[condition.column], condition.value, COMPARISONS[condition.comparison]
         if pd.api.types.is_numeric_dtype(column):
             try:
                 number = float(value)
             except ValueError:
                 raise AnalysisError(f"The exclusion {where!r}: {value!r} is not a number.") from None
-            chosen &= _COMPARE[match[2]](column, number) & column.notna()
+            chosen &= compare(column, number) & column.notna()
         else:
-            if match[2] not in ("==", "!="):
-                raise AnalysisError(f"The exclusion {where!r}: {match[1]} holds words; use == or !=.")
-            chosen &= _COMPARE[match[2]](column.map(label), value) & column.notna()
+            if condition.comparison not in ("==", "!="):
+                raise AnalysisError(f"The exclusion {where!r}: {condition.column} holds words; use == or !=.")
+            chosen &= compare(column.map(label), value) & column.notna()
     return chosen
 
 

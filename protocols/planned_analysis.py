@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 
+from protocols.condition import read_condition
 from protocols.gaze import REGIONS
 from protocols.mistake import Mistake, Place, no_such
 from protocols.planned_tests import test_mistakes
@@ -58,11 +58,14 @@ def within_factors(study: Study, plan: FurtherAnalysis | None = None) -> dict[st
 
 
 def _condition(text: str, where: Place, columns: Iterable[str]) -> Iterator[Mistake]:
-    parts = re.fullmatch(r"\s*(\w+)\s*(<=|>=|==|!=|<|>)\s*(\S.*?)\s*", text)
-    if parts is None:
-        yield Mistake(where, f"{text!r} is no condition; write one as `late_frames > 5`")
-    elif parts[1] not in columns:
-        yield Mistake(where, no_such(parts[1], columns, "column"))
+    for part in text.split(" and "):
+        condition = read_condition(part)
+        if condition is None:
+            yield Mistake(where, f"{part!r} is no condition; write one as `late_frames > 5`")
+            continue
+        for column in (condition.column, *([condition.value[1:]] if condition.value.startswith("$") else [])):
+            if column not in columns:
+                yield Mistake(where, no_such(column, columns, "column"))
 
 
 def _groups(study: Study) -> Iterator[Mistake]:

@@ -42,6 +42,7 @@ def poser() -> Poser:
 def one_walker(actor: Actor, speed: float, step_frequency: float, phase: float) -> Singles:
     """(21, 3, 4) float32 skinning matrices of one walker, as drawn_pose and skin_matrices give them.
 
+    For programs of one's own that pose a walker many times: scenes use drawn_pose, which needs no compiling.
     speed m/s, step_frequency steps/min, phase any number. Raises CoverageError outside the actor's blend tree.
     """
     if not accelerated():

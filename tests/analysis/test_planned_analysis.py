@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from analysis import AnalysisError, anova
-from analysis.exclusions import matching
+from analysis.exclusions import matching, selected
 from analysis.journal import read_journal, read_study
 from analysis.plan import plan_of, read_plan
 from analysis.planned import AnalysisOutcome, analyse
@@ -218,6 +218,17 @@ def test_a_condition_that_cannot_be_read_names_the_columns() -> None:
     assert list(matching(trials, "actor == F1 and late_frames <= 0")) == [True, False]
     with pytest.raises(AnalysisError, match="late_frames"):
         matching(trials, "__import__('os')")
+
+
+def test_a_condition_compares_two_columns_as_the_tests_of_answers_do() -> None:
+    trials = pd.DataFrame({"chosen": ["F1", "M1", None], "original": ["F1", "F1", "M1"], "late_frames": [0, 0, 0]})
+    assert list(matching(trials, "chosen == $original and late_frames < 1")) == [True, False, False]
+    assert list(matching(trials, "chosen != $original")) == [False, True, False]
+
+
+def test_a_test_of_a_part_of_the_trials_that_is_empty_says_so() -> None:
+    with pytest.raises(AnalysisError, match="None of the 2 trials meets 'late_frames > 99'"):
+        selected(pd.DataFrame({"late_frames": [0, 9]}), "late_frames > 99")
 
 
 def test_reference_values_of_actors_that_are_not_shown_do_not_stop_the_other_tests() -> None:

@@ -23,6 +23,14 @@ def test_the_coefficients_are_small_and_credited():
     assert "6:111" in credit
 
 
+def test_every_data_file_says_where_it_comes_from():
+    stimuli = Path(__file__).parents[2] / "stimuli"
+    credits = " ".join(path.read_text(encoding="utf-8") for path in stimuli.rglob("ATTRIBUTION.md"))
+    data = [path for path in stimuli.rglob("*") if path.suffix in (".npz", ".csv", ".glb")]
+    assert len(data) > 6
+    assert [path.name for path in data if path.name not in credits] == []
+
+
 def test_an_unknown_person_is_named():
     with pytest.raises(ValueError, match="CMU-99"):
         load_gait_model().manner({"CMU-99": 1.0})
