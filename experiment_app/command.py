@@ -143,6 +143,8 @@ def run_study(
     """
     from experiment_app.live import ScreenOptions, run_live
 
+    if not 0 <= refresh <= 1000:
+        raise UsageError(f"--refresh {refresh:g}: write the display's rate in Hz, as 60, or leave it out.")
     screen = ScreenOptions(
         full_screen=not window, size=_size(size), display=display, refresh=refresh, keyboard=keyboard,
         devices=tuple(devices or ()), photodiode=photodiode,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -86,18 +87,28 @@ def film_scenes(scenes: Iterator[Scene], size: tuple[int, int], samples: int = 4
         context.release()
 
 
+def _refuse_place(path: Path) -> None:
+    """Raises UsageError where no film can be written, before anything is drawn."""
+    if path.suffix and path.is_dir():
+        raise UsageError(f"{path} is a folder; name a film in it, as {path / 'clip.mp4'}.")
+    if path.suffix and not (path.parent.is_dir() and os.access(path.parent, os.W_OK)):
+        why = "cannot be written to" if path.parent.is_dir() else "is not there"
+        raise UsageError(f"{path}: the folder {path.parent} {why}; make it, or name another.")
+
+
 def write_film(frames: Iterator[Pixels], rate: Fraction, path: Path) -> str:
     """Writes a film at exactly `rate` frames/s, reads its frame times back, and says what was verified.
 
     The name's ending decides: .mp4, .mkv, .mov or .webm (needs PyAV), .webp, or none for a folder of PNG pictures.
     """
     kind = path.suffix.lower()
+    _refuse_place(path)
     if kind in (".mp4", ".mkv", ".mov", ".webm"):
         return _video(frames, rate, path)
     if kind == ".webp":
         return _webp(list(frames), rate, path)
     if kind:
-        raise UsageError(f"--out {path}: films end in .mp4, .mkv, .mov, .webm or .webp; no ending is a folder of PNGs.")
+        raise UsageError(f"{path}: films end in .mp4, .mkv, .mov, .webm or .webp; no ending is a folder of PNGs.")
     return _sequence(frames, rate, path)
 
 

@@ -122,6 +122,8 @@ def test_check_refuses_a_wrong_study_with_its_place_and_status_2(tmp_path, capfd
         ["run", "walk_ratio", "--participant", "P 1"],
         ["run", "walk_ratio", "--participant", ""],
         ["run", "walk_ratio"],
+        ["run", "walk_ratio", "--participant", "P01", "--refresh", "-3"],
+        ["run", "walk_ratio", "--participant", "P01", "--refresh", "nan"],
         ["simulate", "walk_ratio", "--participants", "0"],
         ["simulate", "walk_ratio", "--participants", "many"],
         ["check", "walk_ratio", "--picture", "balance.xyz"],

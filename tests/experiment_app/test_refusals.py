@@ -1,8 +1,12 @@
 """What a careless hand gets: one sentence with the place and the way out, the right status, nothing overwritten."""
 
+from fractions import Fraction
+
 import pytest
 
 from experiment_app.command import run
+from experiment_app.errors import UsageError
+from experiment_app.film import write_film
 from experiment_app.run_folder import participant_runs
 from stimuli.methods.errors import MethodError
 from stimuli.methods.styles import default_styles, store_style
@@ -112,3 +116,17 @@ def test_what_the_system_refuses_is_the_file_and_the_reason_without_a_number(tmp
     finished.journal.mkdir()
     said = refused(["analyse", tmp_path / "walk_ratio"], 1, capfd)
     assert said == f"gaitlab: {finished.journal}: is a directory."
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("there.mp4", "there.mp4 is a folder; name a film in it"),
+        ("none/clip.mp4", "none is not there; make it, or name another"),
+        ("clip.xyz", "clip.xyz: films end in .mp4"),
+    ],
+)
+def test_a_film_that_cannot_be_written_is_refused_before_anything_is_drawn(tmp_path, name, says):
+    (tmp_path / "there.mp4").mkdir()
+    with pytest.raises(UsageError, match=says):
+        write_film(iter(()), Fraction(60), tmp_path / name)
