@@ -18,6 +18,7 @@ from experiment_app.errors import UsageError
 from protocols.assignment import GIVEN_BACK
 from protocols.record import DamagedLineError, decode_line
 from protocols.resuming import Progress
+from protocols.session import answer_columns
 
 PARTICIPANT = re.compile(r"[A-Za-z0-9]{1,32}")
 """Participant IDs: letters and digits only, as the labels of BIDS."""
@@ -206,8 +207,7 @@ def progress(run: Run) -> Progress:
                 left.add(step)
                 if not line["practice"]:
                     answers.pop(line["number"], None)  # a trial done again counts as what was answered last
-                    columns = {**line["factors"], **line["response"], "response_time": line["response_time"]}
-                    answers[line["number"]] = columns
+                    answers[line["number"]] = answer_columns(line)
     return Progress(frozenset(left), begun, consented, bool(run.end), tuple(answers.items()))
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from protocols.adaptive import Tracks, after_response, placed
 from protocols.events import Asked, Clicked, Closed, Event, FocusLost, KeyDown, KeyUp, Saved, Shown
@@ -278,14 +279,17 @@ def _in_trial(session: Session, trial: TaskTrial, event: Event) -> Session:
     if not trial.done:
         return session
     record = _trial_record(session, step, trial, event.time)
-    tracks = after_response(session.plan.study, session.tracks, step.trial.track, answer_columns(record))
+    tracks = after_response(session.plan.study, session.tracks, step.trial.track, answer_columns(vars(record)))
     session = replace(session, tracks=tracks)
     return replace(_emit(session, record), stage=Interval(event.time + session.plan.study.interval), shown=None)
 
 
-def answer_columns(record: TrialRecord) -> dict[str, object]:
-    """What a condition on a trial's answer may name: its factors, the values of its response, and response_time."""
-    return {**record.factors, **record.response, "response_time": record.response_time}
+def answer_columns(trial: Mapping[str, Any]) -> dict[str, object]:
+    """What a condition on a trial's answer may name: its factors, the values of its response, and response_time.
+
+    trial: the members of a TrialRecord, or of its line in a journal.
+    """
+    return {**trial["factors"], **trial["response"], "response_time": trial["response_time"]}
 
 
 def _key_record(step: TrialStep, event: KeyDown | KeyUp, down: bool) -> Key:

@@ -140,4 +140,4 @@ def test_what_counts_as_an_answer_is_what_the_journal_says(tmp_path):
     play(run)
     line = trials(run.run)[0]
     record = TrialRecord(**{k: v for k, v in line.items() if k not in ("kind", "crc")})
-    assert answer_columns(replace(record, response_time=1.0))["walk_ratio"] == line["response"]["walk_ratio"]
+    assert answer_columns(vars(replace(record, response_time=1.0)))["walk_ratio"] == line["response"]["walk_ratio"]
