@@ -16,7 +16,7 @@ from typing import IO, Any
 from experiment_app.crash_note import crash_reason
 from experiment_app.errors import UsageError
 from protocols.assignment import GIVEN_BACK
-from protocols.record import DamagedLineError, decode_line
+from protocols.record import OPENINGS, DamagedLineError, decode_line
 from protocols.resuming import Progress
 from protocols.session import answer_columns
 
@@ -56,7 +56,7 @@ class Run:
     @property
     def sittings(self) -> int:
         """How often the run was opened: once, and once more for every time it was continued."""
-        return sum(line["kind"] in ("header", "continue") for line in self.lines)
+        return sum(line["kind"] in OPENINGS for line in self.lines)
 
     @property
     def interruption(self) -> str:
@@ -80,7 +80,7 @@ class Run:
 
     @property
     def _last_sitting(self) -> tuple[dict[str, Any], ...]:
-        begun = [place for place, line in enumerate(self.lines) if line["kind"] in ("header", "continue")]
+        begun = [place for place, line in enumerate(self.lines) if line["kind"] in OPENINGS]
         return self.lines[begun[-1] :] if begun else ()
 
 

@@ -12,6 +12,8 @@ from itertools import pairwise
 from statistics import quantiles
 from typing import Any
 
+from protocols.record import OPENINGS
+
 SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "gdi generic", "basic render")
 """Words in an OpenGL renderer's name that mean the processor draws."""
 
@@ -72,7 +74,7 @@ class Timing:
 def timing_of_run(lines: Sequence[Mapping[str, Any]]) -> Timing:
     """The timing of a whole run from its journal's lines; of the display, what the newest sitting said of it."""
     header = lines[0]
-    openings = [line for line in lines if line["kind"] in ("header", "continue")]
+    openings = [line for line in lines if line["kind"] in OPENINGS]
     logs = [line for line in lines if line["kind"] == "frames"]
     keys = [line for line in lines if line["kind"] == "key" and line["key"] != "focus"]
     return Timing(

@@ -286,6 +286,10 @@ Record = (
 )  # fmt: skip
 
 
+OPENINGS = (Header.kind, Continued.kind)
+"""Kinds of the lines that begin a sitting."""
+
+
 class DamagedLineError(ValueError):
     """A line of a journal that is not what was written."""
 
