@@ -7,11 +7,15 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from analysis.errors import AnalysisError, listed
+
+if TYPE_CHECKING:
+    from protocols.journal_text import JournalText
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,7 @@ class RecordedRun:
     ended: str  # reason of the last end; "" when there is none
     repeated: tuple[int, ...]  # trial numbers recorded more than once
     torn: bool  # the last line was cut off
+    chained: bool  # each line names the one before, so none can be missing
 
     @property
     def finished(self) -> bool:
@@ -45,46 +50,41 @@ class RecordedStudy:
     left_out: tuple[tuple[str, str], ...] = field(default=())  # participant, reason
 
 
-def read_records(path: Path, name: str = "") -> tuple[list[dict[str, Any]], bool]:
+def read_records(path: Path, name: str = "") -> JournalText:
     """Every record of a journal, the header first, and whether its last line was cut off.
 
-    Raises AnalysisError naming the file and line where an inner line is damaged.
+    Raises AnalysisError naming the file and line where an inner line is damaged or out of its place.
     """
-    from protocols.record import decode_line
+    from protocols.journal_text import DamagedJournalError, read_text
+    from protocols.record import FORMAT
 
     name = name or path.name
-    lines = path.read_bytes().split(b"\n")
-    if lines and not lines[-1].strip():
-        lines.pop()
-    records, torn = [], False
-    for place, line in enumerate(lines, start=1):
-        try:
-            records.append(decode_line(line.decode("utf-8")))
-        except ValueError as error:
-            if place == len(lines):
-                torn = True
-                break
-            why = "the line is not UTF-8; it was altered" if isinstance(error, UnicodeDecodeError) else error
-            raise AnalysisError(f"{name}, line {place} of {len(lines)}: {why}. Restore the file from a copy.") from None
-    if not records or records[0].get("kind") != "header":
+    try:
+        text = read_text(path.read_bytes())
+    except DamagedJournalError as error:
+        raise AnalysisError(
+            f"{name}, line {error.line} of {error.lines}: {error}. Restore the file from a copy."
+        ) from None
+    if not text.records or text.records[0]["kind"] != "header":
         raise AnalysisError(
             f"{name}: the file does not begin with a complete header line, so it is not a usable run. "
             "Restore it from a copy, or move its run folder out of sourcedata."
         )
-    if records[0].get("format") != 1:
+    if text.records[0].get("format", 1) not in range(1, FORMAT + 1):
         raise AnalysisError(
-            f"{name}: written in format {records[0].get('format')!r}; this version reads format 1. Update it."
+            f"{name}: written in format {text.records[0]['format']!r}; this version reads formats 1 to {FORMAT}. "
+            "Update it."
         )
-    return records, torn
+    return text
 
 
 def read_journal(path: Path, name: str = "") -> RecordedRun:
     """One journal; raises AnalysisError naming the file and line where an inner line is damaged."""
     name = name or path.name
-    records, torn = read_records(path, name)
-    header = records[0]
+    text = read_records(path, name)
+    header = text.records[0]
     answers, trials, repeated, ended = dict(header.get("group") or {}), {}, [], ""
-    for place, record in enumerate(records, start=1):
+    for place, record in enumerate(text.records, start=1):
         kind = record.get("kind")
         try:
             if kind == "answer":
@@ -100,7 +100,7 @@ def read_journal(path: Path, name: str = "") -> RecordedRun:
             raise AnalysisError(f"{name}, line {place}: a {kind} record without a usable {error}.") from None
     return RecordedRun(
         path, name, str(header.get("participant", "")), int(header.get("run", 1)), header, answers,
-        tuple(trials[n] for n in sorted(trials)), ended, tuple(dict.fromkeys(repeated)), torn,
+        tuple(trials[n] for n in sorted(trials)), ended, tuple(dict.fromkeys(repeated)), bool(text.torn), text.chained,
     )  # fmt: skip
 
 
@@ -155,8 +155,19 @@ def read_study(folder: Path, unfinished: bool = False) -> RecordedStudy:
             runs.append(run)
     runs, again = _first_of_each(runs)
     left_out += again
+    warnings += earlier_form([run.participant for run in runs if not run.chained])
     warnings += _disagreements(runs)
     return RecordedStudy(tuple(runs), digest.hexdigest(), len(paths), tuple(warnings), tuple(left_out))
+
+
+def earlier_form(participants: Sequence[str]) -> list[str]:
+    """What is to be said of the participants whose journals are of format 1: a sentence, or none."""
+    if not participants:
+        return []
+    return [
+        f"{listed(participants)}: recorded by an earlier gaitlab (journal format 1): an altered line would be noticed, "
+        "a whole line removed, doubled or moved would not."
+    ]
 
 
 def _natural(path: Path) -> list[tuple[int, str]]:

@@ -16,8 +16,8 @@ from queue import SimpleQueue
 from typing import IO
 
 from experiment_app.errors import RunError, UsageError
-from experiment_app.run_folder import Run, journal_lines, lock
-from protocols.record import Ended, Header, Record, TrialRecord, encode_line
+from experiment_app.run_folder import Run, journal_lines, journal_text, lock
+from protocols.record import Ended, Header, Record, TrialRecord, checksum_of, encode_line
 
 DURABLE = (Header, TrialRecord, Ended)
 """Records after which the file is forced to the disk (fsync)."""
@@ -27,11 +27,13 @@ class Journal:
     """An open journal. Use as a context manager; leaving it writes what is queued and closes the file.
 
     Leaving it by an exception, or when the disk refuses a record, is written down as an end with its reason.
+    last: checksum of the line the file ends with, "" when it is empty; the next line names it.
     """
 
-    def __init__(self, file: IO[bytes], path: Path) -> None:
+    def __init__(self, file: IO[bytes], path: Path, last: str = "") -> None:
         self.path = path
         self._file = file
+        self._last = last
         self._queue: SimpleQueue[Record | None] = SimpleQueue()
         self._time = 0.0
         self._queued = 0
@@ -92,7 +94,7 @@ class Journal:
         while (record := self._queue.get()) is not None:
             if self._failure is None:
                 try:
-                    append_line(self._file, encode_line(record))
+                    self._append(record)
                     if isinstance(record, DURABLE):
                         os.fsync(self._file.fileno())
                 except Exception as error:  # whatever it is, the loop must learn of it and not wait for ever
@@ -105,8 +107,13 @@ class Journal:
     def _last_words(self, failure: Exception) -> None:
         """Tries once to add why the run ends here; a full disk often has room for one short line."""
         with suppress(Exception):
-            append_line(self._file, encode_line(Ended(self._time, f"not written: {_reason(failure)}"[:120])))
+            self._append(Ended(self._time, f"not written: {_reason(failure)}"[:120]))
             os.fsync(self._file.fileno())
+
+    def _append(self, record: Record) -> None:
+        line = encode_line(record, self._last)
+        append_line(self._file, line)
+        self._last = checksum_of(line)
 
 
 def append_line(file: IO[bytes], line: str) -> None:
@@ -182,11 +189,11 @@ def reopen_journal(run: Run) -> tuple[Journal, Run, int]:
         raise UsageError(f"{run.journal} cannot be written ({error.strerror}); make it writable.") from None
     try:
         lock(file, run.journal)
-        lines, torn = journal_lines(run.journal)
-        run = replace(run, lines=lines)
+        text = journal_text(run.journal)
+        run = replace(run, lines=text.records)
         if run.end:
             raise UsageError(f"the run in {run.folder} has {run.end} meanwhile; there is nothing to go on with.")
-        _set_torn_aside(file, run, torn)
+        _set_torn_aside(file, run, text.torn)
     except UsageError:
         file.close()
         raise
@@ -195,7 +202,7 @@ def reopen_journal(run: Run) -> tuple[Journal, Run, int]:
         raise UsageError(
             f"{run.folder} cannot be written ({error.strerror}); nothing was changed. Make room, then try again."
         ) from None
-    return Journal(file, run.journal), run, torn
+    return Journal(file, run.journal, text.last), run, text.torn
 
 
 def _set_torn_aside(file: IO[bytes], run: Run, torn: int) -> None:

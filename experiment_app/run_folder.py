@@ -16,7 +16,8 @@ from typing import IO, Any
 from experiment_app.crash_note import crash_reason
 from experiment_app.errors import UsageError
 from protocols.assignment import GIVEN_BACK
-from protocols.record import OPENINGS, DamagedLineError, decode_line
+from protocols.journal_text import DamagedJournalError, JournalText, read_text
+from protocols.record import FORMAT, OPENINGS
 from protocols.resuming import Progress
 from protocols.session import answer_columns
 
@@ -131,33 +132,22 @@ def new_run(data: Path, study: str, participant: str, number: int) -> Run:
     return Run(folder, study, participant, number)
 
 
-def journal_lines(path: Path) -> tuple[tuple[dict[str, Any], ...], int]:
-    """The whole lines of a journal and the number of bytes of a torn last line (0 when there is none).
-
-    Raises UsageError naming file and line when a line before the last is damaged.
-    """
+def journal_text(path: Path) -> JournalText:
+    """What a journal says, and its torn end; raises UsageError naming file and line when a line is damaged."""
     try:
-        raw = path.read_bytes()
+        return read_text(path.read_bytes())
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror}.") from None
-    parts = raw.split(b"\n")
-    lines: list[dict[str, Any]] = []
-    for number, part in enumerate(parts, start=1):
-        if not part and number == len(parts):
-            return tuple(lines), 0
-        try:
-            lines.append(decode_line(part.decode("utf-8")))
-        except (DamagedLineError, UnicodeDecodeError) as error:
-            if number >= len(parts) - 1 and not any(parts[number:]):
-                return tuple(lines), len(raw) - len(b"\n".join(parts[: number - 1])) - (number > 1)
-            why = "the line is not UTF-8; it was altered" if isinstance(error, UnicodeDecodeError) else error
-            raise UsageError(
-                f"{path}: line {number}: {why}. Restore the file from a copy, or start a new run with --new-run."
-            ) from None
-        if number == len(parts):  # a whole line without its newline was still being written
-            lines.pop()
-            return tuple(lines), len(part)
-    return tuple(lines), 0
+    except DamagedJournalError as error:
+        raise UsageError(
+            f"{path}: line {error.line}: {error}. Restore the file from a copy, or start a new run with --new-run."
+        ) from None
+
+
+def journal_lines(path: Path) -> tuple[tuple[dict[str, Any], ...], int]:
+    """The whole lines of a journal and the number of bytes of a torn last line; UsageError as `journal_text`."""
+    text = journal_text(path)
+    return text.records, text.torn
 
 
 def run_at(place: Path) -> Run:
@@ -176,6 +166,11 @@ def _require_header(lines: tuple[dict[str, Any], ...], path: Path) -> None:
     if lines[0]["kind"] != "header":
         raise UsageError(
             f"{path} does not begin with its header, so nothing is known of the run; restore it from a copy."
+        )
+    if lines[0].get("format", 1) > FORMAT:
+        raise UsageError(
+            f"{path} was written in format {lines[0]['format']} by a later gaitlab; this one knows formats up to "
+            f"{FORMAT}. Update gaitlab."
         )
 
 

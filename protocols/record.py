@@ -16,8 +16,11 @@ from pydantic import TypeAdapter, ValidationError
 
 from protocols.study import Level
 
-FORMAT = 1
-"""Version of the journal's lines; raised when a reader of the old version could misread the new."""
+FORMAT = 2
+"""Version of the journal's lines; raised when a reader of the old version could misread the new.
+
+1: each line has a checksum of its own. 2: each line names the checksum of the line before it, too.
+"""
 
 
 @dataclass(frozen=True)
@@ -294,28 +297,57 @@ class DamagedLineError(ValueError):
     """A line of a journal that is not what was written."""
 
 
-def encode_line(record: Record) -> str:
-    """The record as one line of JSON without its newline; the last member is the CRC-32 of what precedes it."""
+@dataclass(frozen=True)
+class Line:
+    """A whole line: its members, its checksum, and the checksum of the line it was written after (None: none named)."""
+
+    values: dict[str, Any]
+    checksum: str
+    after: str | None
+
+
+def encode_line(record: Record, after: str = "") -> str:
+    """The record as one line of JSON without its newline; the last member is the CRC-32 of what precedes it.
+
+    after: checksum of the line before, so that no whole line can go, come or move unnoticed; "" for a first line.
+    """
     values: dict[str, Any] = {"kind": record.kind}
     values.update((f.name, getattr(record, f.name)) for f in fields(record))
-    text = json.dumps(values, ensure_ascii=False, separators=(",", ":"), allow_nan=False, default=dict)
+    return sealed(values, after)
+
+
+def sealed(values: Mapping[str, Any], after: str = "") -> str:
+    """A line of these members, with the checksum of the line before (none when "") and its own."""
+    members = {**values, "after": after} if after else values
+    text = json.dumps(members, ensure_ascii=False, separators=(",", ":"), allow_nan=False, default=dict)
     return f'{text[:-1]},"crc":"{_checksum(text)}"}}'
 
 
+def checksum_of(line: str) -> str:
+    """The checksum at the end of a line that `encode_line` made."""
+    return line[-10:-2]
+
+
 def decode_line(line: str) -> dict[str, Any]:
-    """The members of a line without its checksum; raises DamagedLineError when the line is torn or altered."""
+    """The members of a line without its checksums; raises DamagedLineError when the line is torn or altered."""
+    return read_line(line).values
+
+
+def read_line(line: str) -> Line:
+    """A line of a journal, looked at by itself; raises DamagedLineError when it is torn or altered."""
     head, mark, tail = line.rstrip("\r\n").rpartition(',"crc":"')
     if not mark or not tail.endswith('"}'):
         raise DamagedLineError("the line has no checksum; it was cut off while being written")
-    text = head + "}"
-    if tail[:-2] != _checksum(text):
+    text, checksum = head + "}", tail[:-2]
+    if checksum != _checksum(text):
         raise DamagedLineError("the line does not match its checksum; it was altered or cut off")
     try:
         values = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise DamagedLineError(f"the line is not JSON: {error}") from None
     _check_shape(values, text)
-    return dict(values)
+    after = values.pop("after", None)
+    return Line(values, checksum, after if after is None else str(after))
 
 
 def _check_shape(values: Any, text: str) -> None:

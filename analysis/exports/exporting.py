@@ -9,6 +9,7 @@ from pathlib import Path
 from analysis.errors import AnalysisError
 from analysis.exports.runs import ExportedRun, read_runs
 from analysis.exports.tree import write_tree
+from analysis.journal import earlier_form
 
 Files = Iterator[tuple[str, bytes]]
 FORMATS = ("bids", "psych-ds", "parquet", "csv")
@@ -43,7 +44,8 @@ def export(folder: Path, to: str, out: Path, over_edits: bool = False) -> Export
             raise AnalysisError(f"{out} breaks rules of Psych-DS: {'; '.join(problems[:5])}.")
     people = len({run.participant for run in runs})
     torn = [f"{run.participant}: the journal's last line was cut off and is left out." for run in runs if run.torn]
-    return Exported(tuple(paths), people, len(runs), (*left_out, *torn))
+    earlier = earlier_form([run.participant for run in runs if not run.chained])
+    return Exported(tuple(paths), people, len(runs), (*left_out, *torn, *earlier))
 
 
 def _files(to: str) -> Callable[[Sequence[ExportedRun]], Files]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from io import StringIO
@@ -50,6 +50,7 @@ class ExportedRun:
     study: Mapping[str, Any]
     records: tuple[Timed, ...]
     torn: bool
+    chained: bool
 
     def of(self, *kinds: str) -> list[Timed]:
         """The records of these kinds, in order."""
@@ -102,21 +103,21 @@ def read_runs(folder: Path) -> tuple[list[ExportedRun], list[str]]:
 
 
 def _read(path: Path, name: str) -> ExportedRun:
-    records, torn = read_records(path, name)
-    header = records[0]
+    text = read_records(path, name)
+    header = text.records[0]
     if not re.fullmatch(r"[A-Za-z0-9]+", str(header["participant"])):
         raise AnalysisError(f"{name}: {header['participant']!r} is no participant's code (letters and digits only).")
     try:
-        timed = tuple(_timed(records))
+        timed = tuple(_timed(text.records))
         return ExportedRun(
             path, str(header["participant"]), int(header["run"]), header, _study(str(header["study_text"]), name),
-            timed, torn,
+            timed, bool(text.torn), text.chained,
         )  # fmt: skip
     except (KeyError, TypeError, ValueError) as error:
         raise AnalysisError(f"{name}: a record without a usable {error}; the journal cannot be exported.") from None
 
 
-def _timed(records: list[dict[str, Any]]) -> list[Timed]:
+def _timed(records: Sequence[dict[str, Any]]) -> list[Timed]:
     """The records after the header with their sitting, and its offset by wall clock, never running backwards."""
     sitting, offset, latest = 1, 0.0, 0.0
     timed = []

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from protocols.record import Answered, Consented, Ended, Header, TrialRecord, encode_line
+from tests.journals import rechained
 
 CAPTURED = {"F1": 0.00690, "F2": 0.00560, "M1": 0.00700, "M2": 0.00700}
 PERCEIVED = {
@@ -88,7 +89,7 @@ def journal_lines(
         )
     if reason:
         records.append(Ended(2000.0, reason))
-    return [encode_line(record) for record in records]
+    return rechained(encode_line(record) for record in records)
 
 
 def write_run(folder: Path, participant: str, lines: list[str], run: int = 1) -> Path:

@@ -15,6 +15,7 @@ from analysis.journal import read_journal, read_study
 from analysis.plan import plan_of, read_plan
 from analysis.planned import AnalysisOutcome, analyse
 from tests.analysis.recorded import PERCEIVED, journal_lines, study_text, write_run, write_study
+from tests.journals import rechained, rewrite
 
 
 @pytest.fixture(scope="module")
@@ -130,16 +131,8 @@ def test_pilot_runs_are_called_pilot_runs(tmp_path: Path) -> None:
 
     folder = write_study(tmp_path / "s", 2)
     for journal in folder.glob("sourcedata/sub-*/run-*/journal.jsonl"):
-        lines = journal.read_text(encoding="utf-8").splitlines()
-        journal.write_text("\n".join([_as_pilot(lines[0]), *lines[1:]]) + "\n", encoding="utf-8")
+        rewrite(journal, lambda records: [{**records[0], "pilot": True}, *records[1:]])
     assert any("pilot runs" in warning for warning in read_study(folder).warnings)
-
-
-def _as_pilot(line: str) -> str:
-    from protocols.record import Header, decode_line, encode_line
-
-    values = {name: value for name, value in decode_line(line).items() if name != "kind"}
-    return encode_line(Header(**{**values, "pilot": True}))
 
 
 def test_unfinished_declined_and_withdrawn_runs_are_left_out_and_named(tmp_path: Path) -> None:
@@ -183,7 +176,7 @@ def test_a_damaged_inner_line_is_an_error_with_file_and_line(tmp_path: Path) -> 
 
 def test_a_trial_recorded_twice_counts_once(tmp_path: Path) -> None:
     lines = journal_lines("P01", 1)
-    path = write_run(tmp_path, "P01", [*lines[:-1], lines[10], lines[-1]])
+    path = write_run(tmp_path, "P01", rechained([*lines[:-1], lines[10], lines[-1]]))
     run = read_journal(path)
     assert len(run.trials) == 96
     assert len(run.repeated) == 1

@@ -263,27 +263,24 @@ def test_every_test_has_a_table_for_latex(analysed, tmp_path):
 
 
 def test_recorded_gaze_shares_are_analysed_part_by_part(tmp_path):
-    import json
-
-    from protocols.record import _checksum
     from tests.analysis.recorded import study_text, write_study
+    from tests.journals import rewrite
 
     gaze = "measure: gaze_share, label: Looking time, unit: '%', anova: {within: [region]}, t_tests: [{paired: region}]"
     text = study_text().replace("  exclusions: []", f"  also: [{{{gaze}}}]\n  exclusions: []")
     data = write_study(tmp_path / "walk_ratio", 8, text)
     rng = np.random.default_rng(4)
-    for path in data.rglob("journal.jsonl"):
-        lines = []
-        for line in path.read_text(encoding="utf-8").splitlines():
-            record = json.loads(line)
+    names = ("legs", "arms", "torso", "head", "elsewhere")
+
+    def looked(records: list[dict]) -> list[dict]:
+        for record in records:
             if record["kind"] == "trial":
                 shares = rng.dirichlet([50, 17, 12, 8, 13]) * 100  # near the published 49.7, 17.2, 11.9, 7.9, 13.3 %
-                names = ("legs", "arms", "torso", "head", "elsewhere")
                 record["measured"] |= {f"gaze_{n}": float(s) for n, s in zip(names, shares, strict=True)}
-            del record["crc"]
-            whole = json.dumps(record, ensure_ascii=False, separators=(",", ":"))
-            lines.append(f'{whole[:-1]},"crc":"{_checksum(whole)}"}}\n')
-        path.write_text("".join(lines), encoding="utf-8")
+        return records
+
+    for path in data.rglob("journal.jsonl"):
+        rewrite(path, looked)
     outcome = analyse(data, tmp_path / "out")
     assert not any("gaze" in warning.lower() for warning in outcome.warnings)
     means = pd.read_csv(tmp_path / "out" / "gaze_share" / "descriptives.csv").set_index("region")["mean"]

@@ -27,9 +27,10 @@ from experiment_app.loop import run_session
 from experiment_app.observer import SimulatedParticipant, draw_observer
 from experiment_app.windows.undrawn import UndrawnWindow
 from protocols.events import Closed, FocusLost, KeyDown
-from protocols.record import Answered, encode_line
+from protocols.record import Answered, decode_line, encode_line
 from protocols.session import begin
 from tests.experiment_app.sessions import opened, play
+from tests.journals import rewrite
 
 NASTY = 'a\tb "quoted", line\r\nbreak; <script>alert(1)</script> =1+1 ñ 漢 😀'
 
@@ -71,10 +72,8 @@ def data(tmp_path_factory) -> Path:
         run_session(begin(run.plan), Restless(run, 4, 99), journal)
     run = opened(folder, "P02")
     play(run)
-    path = run.journal.path
-    lines = path.read_text(encoding="utf-8").split("\n")
-    lines[2:2] = [encode_line(Answered(1.0, "remarks", NASTY)), encode_line(Answered(1.0, "sex", "not_said"))]
-    path.write_text("\n".join(lines), encoding="utf-8")
+    said = [decode_line(encode_line(Answered(1.0, *words))) for words in (("remarks", NASTY), ("sex", "not_said"))]
+    rewrite(run.journal.path, lambda records: [*records[:2], *said, *records[2:]])
     run = opened(folder, "P03")
     with run.journal as journal:
         session = begin(run.plan)
@@ -303,19 +302,12 @@ def test_an_export_never_touches_files_it_did_not_write_and_removes_its_own_stal
 
 def test_responses_of_any_task_and_records_of_later_versions_are_exported_as_they_are(data, tmp_path):
     """Journals of choices and ratings have other responses; a device may add records this version does not know."""
-    from protocols.record import decode_line
-
     later = tmp_path / "data/walk_ratio"
     shutil.copytree(data, later)
     journal = later / "sourcedata/sub-P02/run-1/journal.jsonl"
-    lines = []
-    for line in journal.read_text(encoding="utf-8").rstrip("\n").split("\n"):
-        values = decode_line(line)
-        if values["kind"] == "trial":
-            values["response"] = {"chosen": "second", "correct": 1, "original": "first"}
-        lines.append(_line(values))
-    lines.append(_line({"kind": "pulse", "time": 5.0, "part": "ear", "samples": [1, 2, 3]}))
-    journal.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    pulse = {"kind": "pulse", "time": 5.0, "part": "ear", "samples": [1, 2, 3]}
+    chosen = {"response": {"chosen": "second", "correct": 1, "original": "first"}}
+    rewrite(journal, lambda all_: [{**one, **(chosen if one["kind"] == "trial" else {})} for one in all_] + [pulse])
     export(later, "csv", tmp_path / "out")
     rows = [row for row in rows_of(tmp_path / "out/trials.csv") if row["participant"] == "P02"]
     assert {(row["chosen"], row["correct"], row["step_frequency"]) for row in rows} == {("second", "1", "")}
@@ -327,13 +319,6 @@ def test_responses_of_any_task_and_records_of_later_versions_are_exported_as_the
 def _exported(folder: Path, out: Path) -> Path:
     export(folder, "psych-ds", out)
     return out
-
-
-def _line(values: dict) -> str:
-    import zlib
-
-    text = json.dumps(values, ensure_ascii=False, separators=(",", ":"))
-    return f'{text[:-1]},"crc":"{zlib.crc32(text.encode()):08x}"}}'
 
 
 def test_frames_and_gaze_come_out_frame_by_frame_with_late_ones_marked(data, tmp_path):
@@ -350,8 +335,7 @@ def test_frames_and_gaze_come_out_frame_by_frame_with_late_ones_marked(data, tmp
         "kind": "gaze", **trial, "flips": [8.0, 8.0167], "x": [0.5, None], "y": [0.25, None],
         "regions": ["legs", "unknown"], "joints": ["leftFoot", ""], "walkers": [0, -1],
     }  # fmt: skip
-    with open(journal, "a", encoding="utf-8") as file:
-        file.write(f"{_line(frames)}\n{_line(gaze)}\n")
+    rewrite(journal, lambda records: [*records, frames, gaze])
     export(drawn, "csv", tmp_path / "out")
     rows = rows_of(tmp_path / "out/frames.csv")
     assert [(row["time"], row["late"], row["pose"]) for row in rows] == [

@@ -8,13 +8,15 @@ from collections import Counter
 
 import pytest
 
+from analysis.journal import read_study
 from experiment_app.command import run as command
 from experiment_app.errors import RunError, UsageError
 from experiment_app.journal import append_line
 from experiment_app.opening import open_new, open_unfinished, unfinished_run
-from experiment_app.run_folder import journal_lines, participant_runs
-from protocols.record import Answered, encode_line
+from experiment_app.run_folder import journal_lines, journal_text, participant_runs
+from protocols.record import Answered, encode_line, sealed
 from tests.experiment_app.sessions import opened, play
+from tests.journals import rewrite
 from tests.protocols.studies import short
 
 
@@ -84,6 +86,60 @@ def test_a_damaged_line_in_the_middle_is_named(tmp_path):
     run.run.journal.write_bytes(b"\n".join(lines))
     with pytest.raises(UsageError, match=r"journal.jsonl: line 5: the line does not match its checksum"):
         journal_lines(run.run.journal)
+
+
+def test_a_line_removed_doubled_or_moved_is_named_by_all_who_read_the_run(tmp_path, capfd):
+    run = opened(tmp_path)
+    play(run)
+    lines = run.run.journal.read_bytes().split(b"\n")
+    spoiled = {
+        "line 8: the line before it is missing": [*lines[:7], *lines[8:]],
+        "line 9: the line is line 8 once more": [*lines[:8], *lines[7:]],
+        "line 8: the line was written after what is now line 9": [*lines[:7], lines[8], lines[7], *lines[9:]],
+    }
+    for said, changed in spoiled.items():
+        run.run.journal.write_bytes(b"\n".join(changed))
+        with pytest.raises(UsageError, match=f"journal.jsonl: {said}"):
+            participant_runs(tmp_path, "walk_ratio", "P01")
+        assert command(["analyse", str(tmp_path / "walk_ratio"), "--out", str(tmp_path / "out")]) == 1
+        assert command(["export", str(tmp_path / "walk_ratio"), "--to", "csv", "--out", str(tmp_path / "csv")]) == 1
+        place, why = said.split(": ")
+        assert capfd.readouterr().err.replace("\n", " ").count(f"{place} of {len(changed) - 1}: {why}") == 2
+
+
+def test_after_each_kill_the_lines_go_on_naming_the_one_before(tmp_path):
+    for torn in (b'{"kind":"page","time":1.5,"pa', b"", b"\x00" * 40):
+        run = opened(tmp_path)
+        run.journal.close()
+        run.run.journal.write_bytes(run.run.journal.read_bytes() + torn)
+    play(opened(tmp_path))
+    text = journal_text(run.run.journal)
+    assert (text.chained, text.torn) == (True, 0)
+    assert [one["torn_bytes"] for one in text.records if one["kind"] == "continue"] == [29, 0, 40]
+    assert trials(text.records) == [1, 2, 3, 4]
+
+
+def test_a_journal_of_the_earlier_form_is_gone_on_with_and_said_to_be_one(tmp_path):
+    run = opened(tmp_path)
+    run.journal.close()
+    records = [{**one, "format": 1} if "format" in one else one for one in journal_lines(run.run.journal)[0]]
+    run.run.journal.write_text("".join(f"{sealed(one)}\n" for one in records), encoding="utf-8")
+    play(opened(tmp_path))
+    assert trials(journal_lines(run.run.journal)[0]) == [1, 2, 3, 4]
+    (said,) = [w for w in read_study(tmp_path / "walk_ratio").warnings if "earlier" in w]
+    assert said.startswith("P01: recorded by an earlier gaitlab (journal format 1)")
+    lines = run.run.journal.read_bytes().split(b"\n")
+    run.run.journal.write_bytes(b"\n".join([*lines[:-5], *lines[-4:]]))  # what was added names the line before
+    with pytest.raises(UsageError, match="a whole line was removed"):
+        journal_lines(run.run.journal)
+
+
+def test_a_journal_of_a_later_form_is_not_gone_on_with(tmp_path):
+    run = opened(tmp_path)
+    run.journal.close()
+    rewrite(run.run.journal, lambda records: [{**records[0], "format": 3}, *records[1:]])
+    with pytest.raises(UsageError, match="written in format 3 by a later gaitlab"):
+        opened(tmp_path)
 
 
 def test_a_full_disk_ends_the_run_with_a_sentence_and_keeps_what_was_written(tmp_path, monkeypatch):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -25,6 +24,7 @@ from experiment_app.windows.window import Flip
 from protocols.events import Clicked, Event, FocusLost, KeyDown, KeyUp, Shown
 from protocols.plan import TrialStep
 from protocols.session import Session, begin
+from tests.journals import rewrite
 from tests.protocols.studies import short
 
 PERIOD = 1.0 / 30.0
@@ -144,19 +144,13 @@ def test_the_command_says_what_it_checked_and_fails_when_a_pose_differs(tmp_path
 
 
 def alter_a_pose(path: Path) -> None:
-    """Writes another checksum of a pose into the first frame log, with a right checksum of the line."""
-    from protocols.record import _checksum
+    """Writes another checksum of a pose into the first frame log, with the right checksums of the lines."""
 
-    lines = path.read_text("utf-8").splitlines()
-    for number, line in enumerate(lines):
-        if '"kind":"frames"' in line:
-            values = json.loads(line)
-            del values["crc"]
-            values["poses"][5] = "00000000"
-            text = json.dumps(values, ensure_ascii=False, separators=(",", ":"))
-            lines[number] = f'{text[:-1]},"crc":"{_checksum(text)}"}}'
-            break
-    path.write_text("\n".join(lines) + "\n", "utf-8")
+    def altered(records: list[dict]) -> list[dict]:
+        next(one for one in records if one["kind"] == "frames")["poses"][5] = "00000000"
+        return records
+
+    rewrite(path, altered)
 
 
 def trial_of(flips: list[float], stretches: tuple[int, ...], events: list[Event]) -> RecordedTrial:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import zlib
 from collections import Counter
 from html.parser import HTMLParser
 from pathlib import Path
@@ -14,6 +13,7 @@ import pytest
 from analysis.planned import analyse
 from protocols.record import Answered, decode_line, encode_line
 from tests.experiment_app.sessions import opened, play
+from tests.journals import resealed, rewrite
 from tests.protocols.studies import changed, short
 from tests.robustness.judging import journal_verdict
 from tests.robustness.mutation import SCALARS, spoiled_bytes
@@ -42,13 +42,6 @@ def test_spoiled_bytes_of_a_journal_are_read_up_to_the_damage_or_refused(recorde
     assert any("refused" in verdict for verdict in verdicts), verdicts
 
 
-def with_checksum(values: dict) -> bytes:
-    text = json.dumps(values, ensure_ascii=False, separators=(",", ":"))
-    return f'{text[:-1]},"crc":"{zlib.crc32(text.encode("utf-8", "surrogatepass")):08x}"}}'.encode(
-        "utf-8", "surrogatepass"
-    )
-
-
 @pytest.mark.parametrize("seed", range(4))
 def test_lines_with_right_checksums_and_wrong_contents_are_refused_in_one_sentence(recorded, tmp_path, seed):
     """Nobody but a forger or another version writes those; even then there is no traceback."""
@@ -57,13 +50,14 @@ def test_lines_with_right_checksums_and_wrong_contents_are_refused_in_one_senten
     rng, verdicts = Random(seed), Counter[str]()
     for _ in range(25):
         place = rng.randrange(len(lines))
-        values = decode_line(lines[place].decode("utf-8"))
+        records = [decode_line(line.decode("utf-8")) for line in lines]
+        values = records[place]
         member = rng.choice([name for name in values if name not in ("study_text",)])
         if rng.random() < 0.4:
             del values[member]
         else:
             values[member] = rng.choice((*SCALARS, None, [], {}, -1, 1e308, True, {"a": [1]}))
-        journal.write_bytes(b"\n".join([*lines[:place], with_checksum(values), *lines[place + 1 :]]) + b"\n")
+        journal.write_bytes("".join(f"{line}\n" for line in resealed(records)).encode("utf-8", "surrogatepass"))
         verdicts[journal_verdict(data_of(journal), "walk_ratio", "P01", tmp_path / "out")] += 1
     journal.write_bytes(content)
     assert sum(verdicts.values()) == 25
@@ -98,10 +92,8 @@ def test_neither_a_participants_words_nor_a_studys_can_break_the_report(tmp_path
         for participant in ("P01", "P02", "P03"):
             run = opened(tmp_path / name, participant, study)
             play(run)
-            path = run.journal.path
-            lines = path.read_text(encoding="utf-8").split("\n")
-            lines.insert(2, encode_line(Answered(1.0, "remarks", text)))
-            path.write_text("\n".join(lines), encoding="utf-8")
+            said = decode_line(encode_line(Answered(1.0, "remarks", text)))
+            rewrite(run.journal.path, lambda records, said=said: [*records[:2], said, *records[2:]])
         analyse(tmp_path / name / "walk_ratio", tmp_path / f"report-{name}")
         report = tmp_path / f"report-{name}" / "report.html"
         assert "<script>alert" not in report.read_text(encoding="utf-8")
