@@ -48,8 +48,18 @@ def track_tests(used: pd.DataFrame, plan: AnalysisPlan, asked: AdaptivePlan) -> 
     for level, part in ended.groupby("level", observed=True, sort=True):
         every = int((tracks["level"] == level).sum())
         table.loc[table["level"] == str(level), "sentence"] += f"; {len(part)} of {every} track(s) {AT_END}"
-    notes = (f"{len(ended)} of {len(tracks)} track(s) {AT_END}: {_ends(asked, order)}",) if len(ended) else ()
+    settled = [f"{len(ended)} of {len(tracks)} track(s) {AT_END}: {_ends(asked, order)}"] if len(ended) else []
+    notes = (*settled, *_short_of(tracks, order))
     return FurtherTest("adaptive", table, tracks.astype({"level": str}), notes=notes)
+
+
+def _short_of(tracks: pd.DataFrame, order: AdaptiveOrder) -> tuple[str, ...]:
+    """A sentence on the tracks that had all their trials before they turned as often as the study wanted, if any."""
+    if order.stops_after is None:
+        return ()
+    short = int((tracks["reversals"] < order.stops_after).sum())
+    what = f"{short} of {len(tracks)} track(s) had all their trials before {order.stops_after} reversals"
+    return (f"{what}; their thresholds rest on fewer.",) if short else ()
 
 
 def _ends(asked: AdaptivePlan, order: AdaptiveOrder) -> str:
@@ -65,9 +75,11 @@ def _followed(part: pd.DataFrame, order: AdaptiveOrder, levels: tuple[float, ...
     """rule, trials, threshold, sd, reversals and at_end of one track; part: its trials in order."""
     shown = pd.to_numeric(part[order.of]).to_numpy(dtype=float)
     placement = begin_placement(order.rule, levels, float(shown[0]))
+    trials = 0
     for level, yes in zip(shown, part["_yes"], strict=True):
+        trials += not placement.ended  # of a block done again, older answers may follow the end
         placement = placement.after(float(level), bool(yes))
-    row: dict[str, Any] = {"rule": order.rule.kind, "trials": len(part), "at_end": False}
+    row: dict[str, Any] = {"rule": order.rule.kind, "trials": trials, "at_end": False}
     if isinstance(placement, QuestPlus):
         at_end = _ended_at_an_end(placement)
         return row | {"threshold": placement.mean()[0], "sd": placement.threshold_sd(), "at_end": at_end}

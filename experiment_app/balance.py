@@ -25,7 +25,7 @@ def order_in_words(study: Study) -> str:
     order = study.order
     if isinstance(order, AdaptiveOrder):
         rule = order.rule.kind.replace("quest_plus", "QUEST+").replace("_", " ")
-        return f"adaptive order: {order.of} placed by {rule}, yes where {order.yes}{_settling(study)}"
+        return f"adaptive order: {order.of} placed by {rule}, yes where {order.yes}{_settling(study)}{_ending(order)}"
     words = [f"{order.kind.replace('_', ' ')}{' of ' + ' x '.join(order.of) if order.of else ''} order"]
     words += [f"at most {n} in a row with the same {factor}" for factor, n in order.at_most_in_a_row.items()]
     words += [f"the same {factor} at least {n} trials apart" for factor, n in order.at_least_apart.items()]
@@ -39,6 +39,10 @@ def _settling(study: Study) -> str:
     track = begin_tracks(study)[1]
     share = track.settles_at if isinstance(track, Staircase) else None
     return "" if share is None else f", settling at {100.0 * share:.0f} % yes"
+
+
+def _ending(order: AdaptiveOrder) -> str:
+    return "" if order.stops_after is None else f"; each track ends after {order.stops_after} reversals"
 
 
 def balance(study: Study) -> list[str]:

@@ -16,6 +16,7 @@ from protocols.assignment import groups
 from protocols.consistency import inconsistencies, referred_factors, settings_of
 from protocols.design import conditions, make_trials, tracks
 from protocols.mistake import Mistake, Place
+from protocols.order import AdaptiveOrder
 from protocols.parts import Level
 from protocols.resuming import in_words
 from protocols.setting import leaves
@@ -143,7 +144,8 @@ def summary(file: StudyFile) -> list[str]:
         f"  {levels} levels = {cells} conditions, {_counted(study, trials)}, "
         f"after {len(study.practice)} training trials",
         f"  {order_in_words(study)}",
-        f"  about {math.ceil(expected_minutes(study))} minutes; {study.participants.planned} participants planned",
+        f"  {_most(study)}about {math.ceil(expected_minutes(study))} minutes; "
+        f"{study.participants.planned} participants planned",
         f"  an interrupted run {in_words(study.resume)}",
         "",
         "Balance (one dot = one trial of participant 1, left to right in the order shown)",
@@ -154,8 +156,14 @@ def summary(file: StudyFile) -> list[str]:
 def _counted(study: Study, trials: int) -> str:
     """How many trials there are, and why."""
     if study.order.placed_factor:
-        return f"{len(tracks(study))} tracks of {study.repetitions} trials = {trials} trials"
+        most = _most(study)
+        return f"{len(tracks(study))} tracks of {most}{study.repetitions} trials = {most}{trials} trials"
     return f"{_times(study.repetitions)} each = {trials} trials"
+
+
+def _most(study: Study) -> str:
+    """What stands before a number that tracks which end by their reversals need not reach."""
+    return "at most " if isinstance(study.order, AdaptiveOrder) and study.order.stops_after is not None else ""
 
 
 def text_notes(study: Study) -> list[str]:

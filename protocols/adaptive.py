@@ -17,7 +17,7 @@ from protocols.staircase import Staircase
 from protocols.study import Study
 
 Placement = Staircase | QuestPlus
-"""Either has `level`, what to show next, and `after(level, yes)`, itself after an answer."""
+"""Either has `level`, what to show next, `after(level, yes)`, itself after an answer, and `ended`, no more trials."""
 
 Tracks = Mapping[int, Placement]
 
@@ -49,8 +49,9 @@ def begin_placement(
         return quest_plus(levels, thresholds, spreads, function=rule.function, guess=rule.guess, lapses=lapses)
     place = levels.index(start)
     if isinstance(rule, WeightedRule):
-        return Staircase(levels, place, down_after=1, up_after=1, down=rule.down, up=rule.up)
-    return Staircase(levels, place, rule.down_after, rule.up_after, steps=tuple(rule.steps))
+        return Staircase(levels, place, 1, 1, down=rule.down, up=rule.up, stops_after=rule.reversals)
+    steps = tuple(rule.steps)
+    return Staircase(levels, place, rule.down_after, rule.up_after, steps=steps, stops_after=rule.reversals)
 
 
 def placed(study: Study, on: Tracks, trial: Trial) -> Trial:
@@ -73,3 +74,20 @@ def after_response(study: Study, on: Tracks, track: int, columns: Mapping[str, o
     level = columns[order.of]
     assert isinstance(level, (int, float)), level
     return {**on, track: on[track].after(float(level), condition.holds(columns))}
+
+
+def ended(on: Tracks, trial: Trial) -> bool:
+    """Whether a trial is not needed any more, because its track has turned as often as it is to."""
+    return trial.track in on and on[trial.track].ended
+
+
+def turns(on: Tracks, track: int) -> int:
+    """How often a track has turned so far; 0 where there is no staircase."""
+    return len(getattr(on.get(track), "reversals", ()))
+
+
+def why_over(study: Study, on: Tracks, trial: Trial) -> str:
+    """Why the trial just answered was the last of its track: its reversals, or its trials; "" when it was not."""
+    if ended(on, trial):
+        return "reversals"
+    return "trials" if trial.track in on and trial.repetition == study.repetitions else ""

@@ -21,6 +21,9 @@ Factors = Annotated[
     list[Name], BeforeValidator(_as_list, json_schema_input_type=str | list[str]), Field(min_length=1)
 ]  # fmt: skip
 Limit = Annotated[int, Field(strict=True, ge=1, le=1000)]
+Stop = Annotated[
+    int, Field(strict=True, ge=4, le=1000, description="4 at least: a threshold leaves out the first two.")
+]
 Distance = Annotated[int, Field(strict=True, ge=2, le=1000, description="1 is the next trial.")]
 
 
@@ -73,6 +76,11 @@ class StaircaseRule(Part):
     start: list[Number] | None = Field(
         None, min_length=1, max_length=8, description="First level of each interleaved staircase; the last if left out."
     )
+    reversals: Stop | None = Field(
+        None,
+        description="A track ends after so many reversals, as 8 (Levitt 1971), or after `repetitions` trials, what "
+        "comes first; if left out, every track has all its trials.",
+    )
 
 
 class WeightedRule(Part):
@@ -83,6 +91,11 @@ class WeightedRule(Part):
     up: Limit = Field(3, description="Levels up after no; up / (up + down) is the share of yes it settles at.")
     start: list[Number] | None = Field(
         None, min_length=1, max_length=8, description="First level of each interleaved staircase; the last if left out."
+    )
+    reversals: Stop | None = Field(
+        None,
+        description="A track ends after so many reversals, as 8 (Levitt 1971), or after `repetitions` trials, what "
+        "comes first; if left out, every track has all its trials.",
     )
 
 
@@ -115,6 +128,11 @@ class AdaptiveOrder(Part):
         description="When a response counts as yes, as `chosen == faster`, `chosen == $original` or `rating >= 3`."
     )
     rule: Annotated[StaircaseRule | WeightedRule | QuestPlusRule, Field(discriminator="kind")]
+
+    @property
+    def stops_after(self) -> int | None:
+        """Reversals after which a track ends; None when it has all its trials."""
+        return None if isinstance(self.rule, QuestPlusRule) else self.rule.reversals
 
     @property
     def placed_factor(self) -> str:

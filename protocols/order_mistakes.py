@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from protocols.condition import read_condition
 from protocols.feasibility import order_limits_mistakes
 from protocols.mistake import Mistake, Place, no_such
-from protocols.order import AdaptiveOrder, ListOrder, QuestPlusRule
+from protocols.order import AdaptiveOrder, ListOrder, QuestPlusRule, StaircaseRule
+from protocols.staircase import fewest_trials
 from protocols.study import ChoiceQuestion, Study
 
 LARGEST_SQUARE = 100
@@ -69,6 +70,17 @@ def _adaptive(study: Study, order: AdaptiveOrder) -> Iterator[Mistake]:
         if start not in levels:
             listed = ", ".join(str(level) for level in levels)
             yield Mistake(("order", "rule", "start", i), f"{start:g} is no level of {order.of}; there are: {listed}")
+    if order.stops_after is not None:
+        staircase = order.rule if isinstance(order.rule, StaircaseRule) else None
+        fewest = fewest_trials(
+            order.stops_after, *((staircase.down_after, staircase.up_after) if staircase else (1, 1))
+        )
+        if study.repetitions < fewest:
+            message = (
+                f"a track cannot turn {order.stops_after} times within its {study.repetitions} trials (repetitions); "
+                f"it needs {fewest} at least, and usually two or three times as many"
+            )
+            yield Mistake(("order", "rule", "reversals"), message)
     condition = read_condition(order.yes)
     recorded = study.task.recorded
     columns = [*recorded, "response_time", *study.factors]

@@ -40,6 +40,11 @@ class QuestPlus:
         least = min(entropies)
         return next(level for level, h in zip(self.levels, entropies, strict=True) if h <= least + TIE)
 
+    @property
+    def ended(self) -> bool:
+        """False: it goes on for all its trials."""
+        return False
+
     def after(self, level: float, yes: bool) -> QuestPlus:
         """The belief once `level` was shown and answered: Bayes' rule."""
         row = self.yes[self.levels.index(level)]

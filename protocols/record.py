@@ -143,6 +143,8 @@ class TrialRecord:
                    those of the second of two are called beside_speed and so on; empty if undrawn.
     frames, late_frames: frames shown and those later than 1.5 refresh periods.
     track:         of an adaptive order, the track whose answers placed the level, from 1; else 0.
+    track_reversals: of a staircase, how often its track has turned, this answer included; else 0.
+    track_end:     why this was the track's last trial: reversals (as many as the study file wants) or trials; else "".
     """
 
     kind = "trial"
@@ -164,6 +166,8 @@ class TrialRecord:
     frames: int = 0
     late_frames: int = 0
     track: int = 0
+    track_reversals: int = 0
+    track_end: str = ""
 
 
 @dataclass(frozen=True)

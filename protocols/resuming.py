@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from protocols.adaptive import Tracks, after_response
+from protocols.adaptive import Tracks, after_response, ended
 from protocols.plan import Plan, Step, TextStep, TrialStep
 from protocols.study import Resume, TextPage
 
@@ -69,6 +69,7 @@ def again(plan: Plan, progress: Progress) -> Progress:
 
 def _begun_block(plan: Plan, progress: Progress) -> set[str]:
     """Ids of the finished trials of the block in which the first unfinished trial lies."""
+    tracks = _answered(plan, progress)
     finished: set[str] = set()
     block = 0
     for step in plan.steps:
@@ -79,6 +80,8 @@ def _begun_block(plan: Plan, progress: Progress) -> set[str]:
         if step.trial.block != block:
             finished, block = set(), step.trial.block
         if step.id not in progress.left:
+            if ended(tracks, step.trial):  # not shown, as its track was over
+                continue
             return finished
         finished.add(step.id)
     return set()
@@ -92,8 +95,11 @@ def remaining(plan: Plan, progress: Progress) -> Plan:
     """
     left = {step for step in progress.left if not step.startswith("instructions-") or not progress.consented}
     left |= {"consent"} if progress.consented else set()
+    tracks = _answered(plan, progress)
     steps: list[Step] = []
     for step in plan.steps:
+        if isinstance(step, TrialStep) and ended(tracks, step.trial):
+            continue
         if step.id in left or (isinstance(step, TextStep) and step.kind == "break" and not _trials(steps)):
             continue
         if isinstance(step, TrialStep):
@@ -106,14 +112,18 @@ def remaining(plan: Plan, progress: Progress) -> Plan:
         words = plan.study.words
         text = words.welcome_back_text.replace("{next}", str(following)).replace("{total}", str(plan.total))
         steps.insert(0, TextStep("welcome-back", TextPage(title=words.welcome_back, text=text)))
-    return replace(plan, steps=tuple(steps), tracks=_answered(plan, progress))
+    return replace(plan, steps=tuple(steps), tracks=tracks)
 
 
 def _answered(plan: Plan, progress: Progress) -> Tracks:
-    """The plan's tracks after the recorded answers, so that the levels go on where they were."""
+    """The plan's tracks after the recorded answers, so that the levels go on where they were.
+
+    Answers count in the order of the plan: of a block done again, an older answer may be left that its track, which
+    ended sooner this time, no longer asks for.
+    """
     track = {step.trial.number: step.trial.track for step in _trials(list(plan.steps)) if not step.trial.practice}
     tracks = plan.tracks
-    for number, columns in progress.answers:
+    for number, columns in sorted(progress.answers, key=lambda answer: answer[0]):
         if f"trial-{number}" not in progress.left:
             continue  # done again by the study's policy, so its first answer does not count
         tracks = after_response(plan.study, tracks, track.get(number, 0), columns)

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from protocols.adaptive import Tracks, after_response, placed
+from protocols.adaptive import Tracks, after_response, ended, placed, turns, why_over
 from protocols.events import Asked, Clicked, Closed, Event, FocusLost, KeyDown, KeyUp, Saved, Shown
 from protocols.form import Choice, Entry, Form, handle_form
 from protocols.plan import Plan, QuestionsStep, Step, TextStep, TrialStep
@@ -144,6 +144,7 @@ def handle(session: Session, event: Event) -> Session:
 
 
 def _entered(session: Session, index: int, time: float) -> Session:
+    index = _needed(session, index)
     if index == len(session.plan.steps):  # a plan of trials alone, as for a film, has no last page
         return replace(_emit(session, Ended(time, "finished")), ended="finished")
     session = _placed(session, index)
@@ -153,6 +154,29 @@ def _entered(session: Session, index: int, time: float) -> Session:
         # all data are in; whoever closes the window on the last page has finished all the same
         session = _emit(session, Ended(time, "finished"))
     return session
+
+
+def _needed(session: Session, index: int) -> int:
+    """The first step from `index` on that is to be shown: no trial of a track that has ended, no break beside none."""
+    steps = session.plan.steps
+    before = steps[index - 1] if index else None  # the step shown last
+    while index < len(steps):
+        step = steps[index]
+        over = isinstance(step, TrialStep) and ended(session.tracks, step.trial)
+        idle = _is_break(step) and (_is_break(before) or not _trials_left(session, index))
+        if not (over or idle):
+            break
+        index += 1
+    return index
+
+
+def _is_break(step: Step | None) -> bool:
+    return isinstance(step, TextStep) and step.kind == "break"
+
+
+def _trials_left(session: Session, index: int) -> bool:
+    trials = (step.trial for step in session.plan.steps[index:] if isinstance(step, TrialStep))
+    return any(not ended(session.tracks, trial) for trial in trials)
 
 
 def _placed(session: Session, index: int) -> Session:
@@ -279,7 +303,9 @@ def _in_trial(session: Session, trial: TaskTrial, event: Event) -> Session:
     if not trial.done:
         return session
     record = _trial_record(session, step, trial, event.time)
-    tracks = after_response(session.plan.study, session.tracks, step.trial.track, answer_columns(vars(record)))
+    study, track = session.plan.study, step.trial.track
+    tracks = after_response(study, session.tracks, track, answer_columns(vars(record)))
+    record = replace(record, track_reversals=turns(tracks, track), track_end=why_over(study, tracks, step.trial))
     session = replace(session, tracks=tracks)
     return replace(_emit(session, record), stage=Interval(event.time + session.plan.study.interval), shown=None)
 

@@ -18,7 +18,7 @@ class Staircase:
     steps:     levels per step before the first reversal, after it, after the second, ...; the last is kept.
     run:       yes in a row since the last move, or minus the no in a row.
     direction: of the last move: -1 down, 1 up, 0 before the first.
-    reversals: levels shown when the direction changed.
+    reversals: levels shown when the direction changed; stops_after: how many of them end the staircase, None never.
     """
 
     levels: tuple[float, ...]
@@ -31,6 +31,12 @@ class Staircase:
     run: int = 0
     direction: int = 0
     reversals: tuple[float, ...] = ()
+    stops_after: int | None = None
+
+    @property
+    def ended(self) -> bool:
+        """True once it has turned as often as it is to (Levitt 1971: tracks of so many runs); then nothing moves it."""
+        return self.stops_after is not None and len(self.reversals) >= self.stops_after
 
     @property
     def level(self) -> float:
@@ -54,6 +60,8 @@ class Staircase:
 
     def after(self, level: float, yes: bool) -> Staircase:
         """The staircase once `level` was shown and answered."""
+        if self.ended:
+            return self
         here = self.levels.index(level)
         run = max(self.run, 0) + 1 if yes else min(self.run, 0) - 1
         if -self.up_after < run < self.down_after:
@@ -65,6 +73,13 @@ class Staircase:
         moved = here + direction * step * (self.down if run > 0 else self.up)
         place = min(max(moved, 0), len(self.levels) - 1)
         return replace(self, place=place, run=0, direction=direction, reversals=reversals)
+
+
+def fewest_trials(reversals: int, down_after: int, up_after: int) -> int:
+    """Trials that a staircase needs at least to turn so often: one run more than reversals, each of one move."""
+    longer, shorter = max(down_after, up_after), min(down_after, up_after)
+    runs = reversals + 1
+    return (runs + 1) // 2 * shorter + runs // 2 * longer
 
 
 def reversal_mean(staircase: Staircase, leave_out: int = 2) -> float | None:

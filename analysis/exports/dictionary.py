@@ -82,6 +82,8 @@ KNOWN = {
     "page": Column("Name of the page."),
     "target": Column("What was clicked."),
     "track": Column("Of an adaptive order, the track whose answers placed the level; 0 without one."),
+    "track_reversals": Column("Of a staircase, how often its track has turned, this answer included."),
+    "track_end": Column("Why this was the last trial of its track: its reversals, or its trials; empty otherwise."),
     "why": Column("Reason of a pause, of an end, or of the interruption before."),
     "source": Column("What gave the key's time: the X server, a keyboard queue, its arrival, a simulation."),
     "uncertainty_ms": Column("How far the key's time may be off.", "ms"),

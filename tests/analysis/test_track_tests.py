@@ -39,6 +39,18 @@ def test_the_mean_of_the_reversals_without_the_first_two_by_hand():
     assert test.more.loc[0, "threshold"] == pytest.approx((3 + 5 + 4 + 5) / 4)
 
 
+def test_tracks_that_ran_out_of_trials_before_their_reversals_are_counted_and_answers_after_the_end_are_not():
+    asked = plan({**STAIRCASE, "rule": {**STAIRCASE["rule"], "reversals": 6}})
+    answers = [1, 1, 0, 1, 0, 0, 1, 0, 1]  # as above: turns six times, at the ninth answer
+    whole = trials([5, 4, 3, 4, 3, 4, 5, 4, 5, 1, 1], [*answers, 1, 1])
+    short = trials([5, 4, 3, 4, 3, 4, 5, 4], answers[:-1], track=2)
+    test = track_tests(pd.concat([whole, short]), asked, asked.adaptive)
+    assert test.more["trials"].tolist() == [9, 8]
+    assert test.more["reversals"].tolist() == [6, 5]
+    assert test.more.loc[0, "threshold"] == pytest.approx((3 + 5 + 4 + 5) / 4)
+    assert test.notes == ("1 of 2 track(s) had all their trials before 6 reversals; their thresholds rest on fewer.",)
+
+
 def test_two_tracks_of_a_participant_are_averaged_before_people_are():
     asked = plan(QUEST)
     up, down = [3] * 6, [3] * 6

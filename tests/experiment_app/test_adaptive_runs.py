@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 
 from experiment_app.balance import order_in_words
-from experiment_app.run_folder import journal_lines
+from experiment_app.check import summary
+from experiment_app.run_folder import journal_lines, participant_runs
 from protocols.adaptive import after_response, begin_tracks
 from protocols.consistency import inconsistencies
 from protocols.events import Closed
@@ -133,6 +135,94 @@ def test_a_block_that_is_done_again_counts_with_its_second_answers(tmp_path, mon
     for trial in [trial for trial in trials(again.run) if (trial["number"], trial["attempt"]) not in ((5, 1), (6, 1))]:
         assert trial["factors"]["start"] == tracks[trial["track"]].level
         tracks = after_response(file.study, tracks, trial["track"], {**trial["factors"], **trial["response"]})
+
+
+def ending(repetitions: int = 30, more: str = "") -> StudyFile:
+    """Four tracks that end after four reversals of one up one down, with a break after every sixth trial."""
+    text = adaptive("staircase").text.replace("steps: [2, 1]", "steps: [2, 1], down_after: 1, reversals: 4")
+    text = text.replace("repetitions: 12", f"repetitions: {repetitions}").replace("every: 24", "every: 6")
+    return parse_study("adaptive.yaml", text.replace("practice:", f"{more}practice:", 1))
+
+
+def fits(file: StudyFile, shown: list[dict]) -> None:
+    """Every level follows from the answers before it, in the order of the plan, and every track ends as it should."""
+    tracks = begin_tracks(file.study)
+    for trial in sorted(shown, key=lambda trial: trial["number"]):
+        track = trial["track"]
+        assert not tracks[track].ended
+        assert trial["factors"]["start"] == tracks[track].level
+        tracks = after_response(file.study, tracks, track, {**trial["factors"], **trial["response"]})
+        assert trial["track_reversals"] == len(tracks[track].reversals)
+        last = "trials" if trial["repetition"] == file.study.repetitions else ""
+        assert trial["track_end"] == ("reversals" if tracks[track].ended else last)
+    assert sum(track.ended for track in tracks.values()) >= 2
+    assert {trial["track"] for trial in shown if trial["track_end"]} == set(tracks)
+
+
+def test_tracks_end_with_their_reversals_and_the_others_go_on(tmp_path):
+    file = ending()
+    assert inconsistencies(file.study) == []
+    run = opened(tmp_path, study=file)
+    play(run)
+    shown = trials(run.run)
+    fits(file, shown)
+    assert len(shown) < 120
+    last = {trial["track"]: trial["number"] for trial in shown}
+    assert len(set(last.values())) == 4
+    assert max(last.values()) == shown[-1]["number"]
+    lines = journal_lines(run.run.journal)[0]
+    order = [line["kind"] for line in lines if line["kind"] == "trial" or line.get("why") == "set break"]
+    assert ("pause", "pause") not in pairwise(order)  # no two breaks without a trial between
+    assert order[-1] == "trial"
+    assert lines[-2]["reason"] == "finished"
+
+
+def test_check_says_how_tracks_end_and_how_many_trials_there_can_be():
+    said = "\n".join(summary(ending()))
+    assert "4 tracks of at most 30 trials = at most 120 trials" in said
+    assert "each track ends after 4 reversals" in said
+    assert "at most about" in said
+
+
+def test_tracks_that_run_out_of_trials_end_so(tmp_path):
+    file = ending(repetitions=6)
+    play(opened(tmp_path, study=file))
+    (run,) = participant_runs(tmp_path, file.study.study, "P01")
+    ends = {trial["track"]: trial["track_end"] for trial in trials(run)}
+    assert set(ends.values()) <= {"trials", "reversals"}
+    assert "trials" in ends.values()
+
+
+@pytest.mark.parametrize("policy", ["trial", "block"])
+@pytest.mark.parametrize("places", [(5,), (9, 3), (13, 8, 2), (18, 1, 1)])
+def test_tracks_that_end_go_on_after_interruptions_as_if_there_had_been_none(policy, places, tmp_path, monkeypatch):
+    import experiment_app.loop as loop
+
+    file = ending(more=f"resume: {{policy: {policy}}}\n")
+    for place in places:
+        finished = 0
+
+        def stopping(session, event, place=place):
+            nonlocal finished
+            before = len(session.emitted)
+            session = handle(session, event)
+            finished += sum(isinstance(r, TrialRecord) and not r.practice for r in session.emitted[before:])
+            return handle(session, Closed(event.time, "window closed")) if finished == place else session
+
+        monkeypatch.setattr(loop, "handle", stopping)
+        play(opened(tmp_path, study=file))
+    monkeypatch.setattr(loop, "handle", handle)
+    again = opened(tmp_path, study=file)
+    play(again)
+    newest = {trial["number"]: trial for trial in trials(again.run)}
+    ended, counting = set(), []
+    for number in sorted(newest):  # an answer left of a block done again may follow the end of its track
+        trial = newest[number]
+        if trial["track"] not in ended:
+            counting.append(trial)
+        if trial["track_end"]:
+            ended.add(trial["track"])
+    fits(file, counting)
 
 
 def test_what_counts_as_an_answer_is_what_the_journal_says(tmp_path):

@@ -16,7 +16,7 @@ from protocols.condition import read_condition
 from protocols.design import make_trials
 from protocols.order_mistakes import order_mistakes
 from protocols.quest_plus import quest_plus, rise
-from protocols.staircase import Staircase, reversal_mean
+from protocols.staircase import Staircase, fewest_trials, reversal_mean
 from tests.protocols.studies import ordered, study
 
 ANSWERS = [bool(a) for a in (1, 1, 0, 1, 1, 1, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1, 0, 1)]
@@ -71,6 +71,56 @@ def test_staircases_settle_where_their_authors_say(stairs, settles):
         stairs = stairs.after(stairs.level, rng.random() < (stairs.level + 1.0) / 101.0)
     # steps of a hundredth of the range and a straight psychometric function: half a step of bias at most
     assert mean(seen) / 100.0 == pytest.approx(settles, abs=0.015)
+
+
+def test_a_staircase_ends_with_its_last_reversal_and_then_nothing_moves_it():
+    # 1 up 1 down from 5: 5 y, 4 y, 3 n (turn), 4 y (turn), 3 n (turn), 4 n, 5 y (turn): four reversals in seven trials
+    levels, stairs = shown(Staircase(LEVELS, 5, 1, 1, stops_after=4), [True, True, False, True, False, False, True])
+    assert levels == [5, 4, 3, 4, 3, 4, 5]
+    assert (stairs.ended, stairs.reversals) == (True, (3, 4, 3, 5))
+    assert stairs.after(4, True) == stairs
+    assert not shown(Staircase(LEVELS, 5, 1, 1, stops_after=4), [True, True, False, True, False, False])[1].ended
+
+
+@given(st.lists(st.booleans(), max_size=80), st.integers(1, 3), st.integers(1, 3), st.integers(4, 8))
+def test_up_to_its_end_a_staircase_goes_as_one_without_end_and_never_ends_too_soon(answers, down, up, reversals):
+    free, ending = Staircase(LEVELS, 5, down, up), Staircase(LEVELS, 5, down, up, stops_after=reversals)
+    for trial, yes in enumerate(answers, start=1):
+        assert ending.level == free.level
+        free, ending = free.after(free.level, yes), ending.after(ending.level, yes)
+        assert ending.reversals == free.reversals
+        if ending.ended:
+            assert len(free.reversals) == reversals
+            assert trial >= fewest_trials(reversals, down, up)
+            break
+
+
+@pytest.mark.parametrize(("down", "up"), [(1, 1), (2, 1), (1, 3), (3, 2)])
+def test_the_fewest_trials_are_those_of_the_quickest_answers(down, up):
+    def needed(first: bool) -> int:
+        stairs, yes, trials = Staircase(LEVELS, 5, down, up, stops_after=5), first, 0
+        while not stairs.ended:
+            place = stairs.place
+            stairs, trials = stairs.after(stairs.level, yes), trials + 1
+            yes = yes if stairs.place == place else not yes
+        return trials
+
+    assert fewest_trials(5, down, up) == min(needed(True), needed(False))
+
+
+def test_tracks_that_end_after_eight_reversals_average_where_levitt_says():
+    """Levitt (1971), table I: one up two down estimates the 70.7 % point, from the turning points of its runs."""
+    rng, levels = Random(11), tuple(float(level) for level in range(101))
+    found, trials = [], []
+    for _ in range(400):
+        stairs = Staircase(levels, 80, steps=(16, 8, 4, 2), stops_after=12)
+        count = 0
+        while not stairs.ended:
+            stairs, count = stairs.after(stairs.level, rng.random() < (stairs.level + 1.0) / 101.0), count + 1
+        found.append(reversal_mean(stairs, 4))
+        trials.append(count)
+    assert mean(found) / 100.0 == pytest.approx(0.7071, abs=0.02)
+    assert len(set(trials)) > 10  # a number of trials is no longer what ends them
 
 
 @given(st.lists(st.booleans(), max_size=60), st.integers(1, 3), st.integers(1, 3), st.integers(0, 9))
@@ -196,6 +246,8 @@ def test_a_condition_compares_numbers_as_numbers_and_words_as_words(text, column
         ({"of": "strat"}, ("order", "of"), "did you mean start?"),
         ({"of": "actor"}, ("factors", "actor", 0), "'F1' is not a number"),
         ({"yes": "walk_ratio"}, ("order", "yes"), "is no condition"),
+        ({"rule": {"kind": "staircase", "reversals": 8}}, ("order", "rule", "reversals"),
+         "cannot turn 8 times within its 4 trials (repetitions); it needs 13 at least"),
         ({"yes": "walkratio > 0.006"}, ("order", "yes"), "did you mean walk_ratio?"),
         ({"rule": {"kind": "weighted", "start": [95]}}, ("order", "rule", "start", 0),
          "there are: 80, 90, 100, 110, 120"),
