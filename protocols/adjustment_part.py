@@ -12,6 +12,7 @@ from protocols import adjustment
 from protocols.adjustment import AdjustmentTask, AdjustmentTrial
 from protocols.mistake import Mistake
 from protocols.parts import Key, Level, Part, StepFrequency
+from protocols.possible import Possible, Span
 from protocols.setting import CONSTANT, StepFrequencySetting, kind_of, value_of
 from protocols.stimulus import Stimulus, Walk
 from protocols.task import Setup
@@ -55,6 +56,11 @@ class Adjustment(TaskPart):
         1.0, strict=True, ge=0.0, le=60.0, description="s before the confirm key is accepted."
     )
     keys: AdjustmentKeys = AdjustmentKeys()
+
+    @property
+    def recorded(self) -> dict[str, Possible]:
+        """The gait that was set; its step frequency lies in the range."""
+        return {**super().recorded, "step_frequency": Span(self.range.minimum, self.range.maximum)}
 
     @classmethod
     def takes(cls) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from protocols.choice import ChoiceTask, ChoiceTrial
 from protocols.mistake import Mistake, no_such
 from protocols.pair_part import PairPart
 from protocols.parts import Key, Name
+from protocols.possible import Possible, Span
 from protocols.task import Setup
 from protocols.task_part import TASK, TaskKeys
 
@@ -43,14 +44,13 @@ class Choice(PairPart):
     keys: ChoiceKeys = ChoiceKeys()
 
     @property
-    def recorded(self) -> dict[str, tuple[str, ...] | None]:
-        """Columns that a choice fills as it is shown here, to the words they can hold, or None for numbers."""
+    def recorded(self) -> dict[str, Possible]:
+        """Columns that a choice fills as it is shown here, to what they can hold."""
         names, apart = tuple(self.alternatives), self.arrangement == "one_after_the_other"
         places = choice.PLACES if apart else choice.SIDES
-        columns: dict[str, tuple[str, ...] | None] = {"chosen": names, "side": places}
-        columns |= dict.fromkeys(places, names)
-        columns |= {"original": names, "correct": None} if self.original is not None else {}
-        return columns | dict.fromkeys(["decision_time", "views"] if apart else ["views"])
+        columns: dict[str, Possible] = {"chosen": names, "side": places, **dict.fromkeys(places, names)}
+        columns |= {"original": names, "correct": (0, 1)} if self.original is not None else {}
+        return columns | ({"decision_time": Span()} if apart else {}) | {"views": self.seen}
 
     @property
     def key_part(self) -> TaskKeys:

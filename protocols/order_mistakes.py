@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from protocols.condition import read_condition
 from protocols.feasibility import order_limits_mistakes
 from protocols.mistake import Mistake, Place, no_such
 from protocols.order import AdaptiveOrder, ListOrder, QuestPlusRule, StaircaseRule
+from protocols.possible import Possible, Span, condition_mistakes
 from protocols.staircase import fewest_trials
 from protocols.study import ChoiceQuestion, Study
 
@@ -81,20 +81,10 @@ def _adaptive(study: Study, order: AdaptiveOrder) -> Iterator[Mistake]:
                 f"it needs {fewest} at least, and usually two or three times as many"
             )
             yield Mistake(("order", "rule", "reversals"), message)
-    condition = read_condition(order.yes)
-    recorded = study.task.recorded
-    columns = [*recorded, "response_time", *study.factors]
-    if condition is not None:
-        words = recorded.get(condition.column)
-        if words is not None and not condition.value.startswith("$") and condition.value not in words:
-            message = f"{condition.column} is never {condition.value}; it can be: {', '.join(words)}"
-            yield Mistake(("order", "yes"), message)
-        for column in [condition.column, *([condition.value[1:]] if condition.value.startswith("$") else [])]:
-            if column not in columns:
-                yield Mistake(("order", "yes"), no_such(column, columns, "factor or part of a response"))
-    if condition is None:
-        message = f"{order.yes!r} is no condition; write one on the response, as `side == left` or `rating >= 3`"
-        yield Mistake(("order", "yes"), message)
+    columns: dict[str, Possible | None] = {**study.task.recorded, "response_time": Span()}
+    columns |= {name: tuple(values) for name, values in study.factors.items()}
+    example = "side == left` or `rating >= 3"
+    yield from condition_mistakes(order.yes, ("order", "yes"), columns, "factor or part of a response", example)
     if isinstance(order.rule, QuestPlusRule) and order.rule.function == "weibull":
         for field, values in (("levels", levels), ("thresholds", order.rule.thresholds or [])):
             if any(isinstance(value, (int, float)) and value <= 0 for value in values):

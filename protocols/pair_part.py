@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -9,6 +10,7 @@ from pydantic import Field
 
 from protocols.mistake import Mistake, Place
 from protocols.parts import Level, Name, Text
+from protocols.possible import Span
 from protocols.setting import Given
 from protocols.showing import Showing
 from protocols.stimulus import Alternative, Stimulus, Walk
@@ -72,6 +74,11 @@ class PairPart(TaskPart):
     def showing(self) -> Showing:
         """How the alternatives are shown."""
         return Showing(self.arrangement, self.time_limit, self.gap, self.views)
+
+    @property
+    def seen(self) -> Span:
+        """How often the alternatives can have been seen when the answer is given."""
+        return Span(1.0, math.inf if self.views is None else float(self.views), 1.0)
 
     def seconds(self, stimulus: Stimulus) -> float:
         """s that a participant typically takes for a trial.

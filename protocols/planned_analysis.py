@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from protocols.condition import read_condition
 from protocols.gaze import REGIONS
 from protocols.mistake import Mistake, Place, no_such
-from protocols.planned_tests import test_mistakes
+from protocols.planned_tests import Columns, test_mistakes
+from protocols.possible import Possible, Span, condition_mistakes
 from protocols.study import FurtherAnalysis, Level, Study
 
 GAZE_SHARE = "gaze_share"
@@ -28,21 +28,25 @@ def analysis_mistakes(study: Study) -> Iterator[Mistake]:
         measures.add(plan.measure)
         yield from _measure(study, plan, at)
         yield from _factors_of_tests(study, plan, at)
-        within, columns = within_factors(study, plan), [*columns_of(study), *within_factors(study, plan)]
+        within, columns = within_factors(study, plan), columns_of(study, plan)
         yield from test_mistakes(study, plan, at, within, columns)
         yield from _equivalence_and_regression(study, plan, at)
         yield from _figures(study, plan, at)
         for i, test in enumerate(plan.t_tests):
             if test.where is not None:
-                yield from _condition(test.where, (*at, "t_tests", i, "where"), columns)
-    columns = [*columns_of(study), *within_factors(study)]
+                yield from _conditions(test.where, (*at, "t_tests", i, "where"), columns, both_ways=False)
+    columns = columns_of(study)
     for i, exclusion in enumerate(study.analysis.exclusions):
-        yield from _condition(exclusion.where, ("analysis", "exclusions", i, "where"), columns)
+        yield from _conditions(exclusion.where, ("analysis", "exclusions", i, "where"), columns)
 
 
-def columns_of(study: Study) -> list[str]:
-    """Columns that a condition may name, besides the within factors."""
-    return [*_columns(study), *study.participants.between, "late_frames", "key_presses", "reversals"]
+def columns_of(study: Study, plan: FurtherAnalysis | None = None) -> dict[str, Possible | None]:
+    """Columns that a condition may name, to what they can hold; None where a study of this kind does not fill one."""
+    counts = ("response_time", "late_frames", "key_presses", "reversals")
+    columns: dict[str, Possible | None] = dict.fromkeys(study.task.responses)
+    columns |= {**study.task.recorded, **dict.fromkeys(counts, Span())}
+    columns |= {name: tuple(levels) for name, levels in study.participants.between.items()}
+    return columns | {name: tuple(levels) for name, levels in within_factors(study, plan).items()}
 
 
 def _columns(study: Study) -> tuple[str, ...]:
@@ -57,15 +61,9 @@ def within_factors(study: Study, plan: FurtherAnalysis | None = None) -> dict[st
     return {**study.factors, **made, **regions}
 
 
-def _condition(text: str, where: Place, columns: Iterable[str]) -> Iterator[Mistake]:
+def _conditions(text: str, where: Place, columns: Columns, both_ways: bool = True) -> Iterator[Mistake]:
     for part in text.split(" and "):
-        condition = read_condition(part)
-        if condition is None:
-            yield Mistake(where, f"{part!r} is no condition; write one as `late_frames > 5`")
-            continue
-        for column in (condition.column, *([condition.value[1:]] if condition.value.startswith("$") else [])):
-            if column not in columns:
-                yield Mistake(where, no_such(column, columns, "column"))
+        yield from condition_mistakes(part, where, columns, both_ways=both_ways)
 
 
 def _groups(study: Study) -> Iterator[Mistake]:

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from protocols.condition import read_condition
 from protocols.further_tests import DPrime, Proportions, Psychometric, TTest
 from protocols.mistake import Mistake, Place, no_such
+from protocols.possible import Possible, condition_mistakes
 from protocols.study import FurtherAnalysis, Level, Study
+
+Columns = Mapping[str, Possible | None]
+EXAMPLE = "correct == 1` or `chosen != $original"
 
 
 def test_mistakes(
-    study: Study, plan: FurtherAnalysis, at: Place, within: Mapping[str, Sequence[Level]], columns: Sequence[str]
+    study: Study, plan: FurtherAnalysis, at: Place, within: Mapping[str, Sequence[Level]], columns: Columns
 ) -> Iterator[Mistake]:
     """What t tests, pairs, proportions, d' and psychometric functions name in vain.
 
-    within: within-participant factors and their levels; columns: of a trial, that conditions may name.
+    within: within-participant factors and their levels; columns: of trials, to what they hold.
     """
     for i, test in enumerate(plan.t_tests):
         yield from _t_test(study, test, (*at, "t_tests", i), within)
@@ -41,16 +44,6 @@ def _known(names: Iterable[str], known: Sequence[str], where: Place, what: str) 
     for i, name in enumerate(names):
         if name not in known:
             yield Mistake((*where, i), no_such(name, known, what))
-
-
-def _condition(text: str, where: Place, columns: Sequence[str]) -> Iterator[Mistake]:
-    condition = read_condition(text)
-    if condition is None:
-        yield Mistake(where, f"{text!r} is no condition; write one as `correct == 1` or `chosen != $original`")
-        return
-    for name in [condition.column, *([condition.value[1:]] if condition.value.startswith("$") else [])]:
-        if name not in columns:
-            yield Mistake(where, no_such(name, columns, "column"))
 
 
 def _t_test(study: Study, test: TTest, where: Place, within: Mapping[str, Sequence[Level]]) -> Iterator[Mistake]:
@@ -87,19 +80,17 @@ def _values(test: TTest, where: Place, within: Mapping[str, Sequence[Level]]) ->
             yield Mistake((*where, "against", level), message, on_key=True)
 
 
-def _answers(
-    test: Proportions | DPrime, where: Place, factors: Sequence[str], columns: Sequence[str]
-) -> Iterator[Mistake]:
+def _answers(test: Proportions | DPrime, where: Place, factors: Sequence[str], columns: Columns) -> Iterator[Mistake]:
     for field in ("success", "signal", "answer"):
         if hasattr(test, field):
-            yield from _condition(getattr(test, field), (*where, field), columns)
+            yield from condition_mistakes(getattr(test, field), (*where, field), columns, example=EXAMPLE)
     yield from _known(test.each or [], factors, (*where, "each"), "factor")
 
 
 def _psychometric(
-    test: Psychometric, where: Place, within: Mapping[str, Sequence[Level]], columns: Sequence[str]
+    test: Psychometric, where: Place, within: Mapping[str, Sequence[Level]], columns: Columns
 ) -> Iterator[Mistake]:
-    yield from _condition(test.success, (*where, "success"), columns)
+    yield from condition_mistakes(test.success, (*where, "success"), columns, example=EXAMPLE)
     yield from _known(test.each or [], list(within), (*where, "each"), "within factor")
     if test.level not in within:
         yield Mistake((*where, "level"), no_such(test.level, within, "within factor"))

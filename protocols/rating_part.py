@@ -11,6 +11,7 @@ from protocols import rating
 from protocols.mistake import Mistake
 from protocols.pair_part import PairPart
 from protocols.parts import Key, Number, Part, Text
+from protocols.possible import Possible, Span
 from protocols.rating import RatingTask, RatingTrial
 from protocols.task import Scale, Setup
 from protocols.task_part import TASK, TaskKeys
@@ -59,6 +60,11 @@ class Rating(PairPart):
         "as_written", description="as_written: the first alternative is always on the left, or first."
     )
     keys: RatingKeys = RatingKeys()
+
+    @property
+    def recorded(self) -> dict[str, Possible]:
+        """The rating, on its scale, and how often the walks were seen."""
+        return {"rating": Span(self.scale.minimum, self.scale.maximum, self.scale.step), "views": self.seen}
 
     @property
     def key_part(self) -> TaskKeys:

@@ -14,6 +14,7 @@ from pydantic import Field
 
 from protocols.mistake import Mistake, Place
 from protocols.parts import Key, Level, Part
+from protocols.possible import Possible, Span
 from protocols.setting import SettingsPart
 from protocols.stimulus import Stimulus, Walk
 from protocols.task import Setup, TaskTrial
@@ -46,9 +47,9 @@ class TaskPart(SettingsPart):
     measures: ClassVar[tuple[str, ...]] = ()
 
     @property
-    def recorded(self) -> Mapping[str, tuple[str, ...] | None]:
-        """Columns that the response fills in this study, to the words they can hold, or None for numbers."""
-        return dict.fromkeys(self.responses)
+    def recorded(self) -> Mapping[str, Possible]:
+        """Columns that the response fills in this study, to what they can hold."""
+        return dict.fromkeys(self.responses, Span())
 
     @property
     def asked(self) -> str:
