@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import math
-import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -18,6 +16,7 @@ from protocols.design import conditions, make_trials, tracks
 from protocols.mistake import Mistake, Place
 from protocols.order import AdaptiveOrder
 from protocols.parts import Level
+from protocols.placeholders import unknown_placeholders
 from protocols.resuming import in_words
 from protocols.setting import leaves
 from protocols.stimulus import Walk
@@ -166,14 +165,15 @@ def _most(study: Study) -> str:
     return "at most " if isinstance(study.order, AdaptiveOrder) and study.order.stops_after is not None else ""
 
 
-def text_notes(study: Study) -> list[str]:
-    """Sentences about texts that this computer cannot show as they should be; empty when it can."""
+def text_notes(file: StudyFile) -> list[str]:
+    """Sentences about texts that would not be shown as they should be; empty when all are well."""
     from experiment_app.render.fonts import can_shape, missing_glyphs, needs_shaping
 
+    study = file.study
     texts = "".join(sorted(set("".join(_texts(study.model_dump())))))
     notes = [
         *_unused_factors(study),
-        *_unknown_braces(study),
+        *_unknown_braces(file),
         *_wrong_arrows(study),
         *_small_pages(study),
         *_untrue_perspective(study),
@@ -199,17 +199,13 @@ def _unused_factors(study: Study) -> Iterator[str]:
             yield f"factor {factor} changes nothing that is shown; refer to it as ${factor} in stimulus or task."
 
 
-def _unknown_braces(study: Study) -> Iterator[str]:
-    """Names in braces that stand for no key, which the participant would read as they are written."""
-    known = list(study.task.keys_for(1))
-    told = [*study.pages.instructions, study.pages.before_practice, study.pages.before_trials]
-    words = " ".join(f"{page.title} {page.text}" for page in told if page)
-    for written in dict.fromkeys(re.findall(r"\{[^{}\s]*\}?", words)):
-        name = written.strip("{}")
-        if written != f"{{{name}}}" or name not in known:
-            near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
-            way = f"did you mean {{{near[0]}}}?" if near else f"the keys are {', '.join(f'{{{k}}}' for k in known)}."
-            yield f"{written} in the instructions is no key of the task and is shown as it is written; {way}"
+def _unknown_braces(file: StudyFile) -> Iterator[str]:
+    """Names in braces that stand for nothing, with the line they stand in."""
+    for mistake in file.error(unknown_placeholders(file.study)).mistakes:
+        written = mistake.message.partition(" ")[0]
+        lines = file.text.split("\n")
+        places = (n for n, line in enumerate(lines, start=1) if n >= mistake.line and written in line)
+        yield f"line {next(places, mistake.line)}: {mistake.message}."
 
 
 def _wrong_arrows(study: Study) -> Iterator[str]:

@@ -174,7 +174,7 @@ def check(
     if participant_number is not None and participant_number < 1:
         raise UsageError(f"--participant-number {participant_number}: numbers of arrival begin at 1.")
     file = checked_study(study)
-    for note in text_notes(file.study):
+    for note in text_notes(file):
         problems.print(f"Note: {note}", style="yellow", markup=False)
     for line in summary(file):
         out.print(line, markup=False)

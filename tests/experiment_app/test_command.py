@@ -52,7 +52,7 @@ def test_the_version_is_the_projects():
         (
             "Hold {lower} for",
             "Hold {lwer} for",
-            "{lwer} in the instructions is no key of the task and is shown as it is",
+            "{lwer} is shown to participants as it is written; did you mean {lower}?",
         ),
         ("Hold {raise} for", "Hold {raise for", "did you mean {raise}?"),
         ("language: en", "language: fr", "the buttons and hints are English"),
