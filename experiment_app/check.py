@@ -5,21 +5,18 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from experiment_app.balance import balance, likely_seed, order_in_words
-from experiment_app.staging import making_of
-from protocols.assignment import groups
+from experiment_app.coverage import coverage_mistakes
 from protocols.consistency import inconsistencies, referred_factors, settings_of
 from protocols.design import conditions, make_trials, tracks
 from protocols.mistake import Mistake, Place
 from protocols.order import AdaptiveOrder
-from protocols.parts import Level
 from protocols.placeholders import unknown_placeholders
 from protocols.resuming import in_words
 from protocols.setting import leaves
-from protocols.stimulus import Walk
 from protocols.study import Study, Words
 from protocols.study_file import StudyFile, read_study
 
@@ -34,7 +31,7 @@ def checked_study(study: str) -> StudyFile:
     """The study of a file or shipped name; raises StudyFileError with every mistake at once, also in names."""
     file = read_study(study)
     refuse_mistakes(file, [*inconsistencies(file.study), *check_names(file)])
-    refuse_mistakes(file, list(_coverage(file.study)))
+    refuse_mistakes(file, list(coverage_mistakes(file.study)))
     return file
 
 
@@ -80,47 +77,6 @@ def _names(study: Study, setting: object, place: Place, what: str, known: Sequen
             near = same or get_close_matches(str(name), known, n=1, cutoff=0.5)
             way = f"did you mean {near[0]}?" if near else f"there are: {', '.join(known)}"
             yield Mistake(where, f"there is no {what} {name}; {way}")
-
-
-def _coverage(study: Study) -> Iterator[Mistake]:
-    """Walks that cannot be: speeds outside what the actor can walk at, over the task's whole range, or not made so."""
-    from experiment_app.walkers import own_step_frequency
-    from stimuli.actors import tree_of
-    from stimuli.blend_tree import blend_weights
-
-    impossible: dict[Walk, str] = {}
-    checked: set[Walk] = set()
-    found: set[Place] = set()
-    for levels, place in _conditions_and_places(study):
-        for walk in study.task.extremes(study.stimulus, levels):
-            if walk not in checked and walk.crowd is None:
-                checked.add(walk)
-                try:
-                    making = making_of(walk)
-                    if making is None and walk.step_frequency is not None:
-                        wanted = {"speed": walk.speed, "step_frequency": walk.step_frequency}
-                        blend_weights(tree_of(walk.actor), wanted)
-                    else:
-                        own_step_frequency(walk.actor, walk.body, making, walk.speed)
-                except ValueError as error:
-                    impossible[walk] = f"actor {walk.actor}: {error}"
-            if walk in impossible and place not in found:
-                found.add(place)
-                yield Mistake(place, impossible[walk])
-
-
-def _conditions_and_places(study: Study) -> Iterator[tuple[Mapping[str, Level], Place]]:
-    """The levels of every condition and training trial, and where its speed stands."""
-    speed = study.stimulus.speed
-    factor = speed[1:] if isinstance(speed, str) else None
-    for group in groups(study):
-        for levels in conditions(study):
-            place: Place = ("stimulus", "speed")
-            if factor in study.factors:
-                place = ("factors", factor, study.factors[factor].index(levels[factor]))
-            yield {**group, **levels}, place
-        for i, trial in enumerate(study.practice):
-            yield {**group, **trial.levels}, ("practice", i, factor) if factor else ("practice", i)
 
 
 def expected_minutes(study: Study) -> float:

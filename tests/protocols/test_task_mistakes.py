@@ -85,6 +85,53 @@ def test_a_measure_that_no_trial_would_have_is_refused_before_anybody_comes(tmp_
     assert sentence in said(tmp_path, "poulaine_reconstruction", change)
 
 
+MAKING = [  # what the study has, what it becomes, the place and the text of the line that is blamed
+    ("poulaine_reconstruction", "points: $points,", "points: $points, share: 0.5,",
+     "task.alternatives.rebuilt.making.share", "share: 0.5"),
+    ("poulaine_reconstruction", "{method: captured}", "{method: captured, source_speed: 0.7}",
+     "task.alternatives.captured.making.source_speed", "captured: {making"),
+    ("poulaine_reconstruction", "method: poulaine, source_speed: $speed,", "method: poulaine, source_speed: 2.9,",
+     "task.alternatives.rebuilt.making.source_speed", "source_speed: 2.9"),
+    ("poulaine_reconstruction", "{method: poulaine,", "{method: poulaine, height: 2.5, walk_ratio: 0.0001,",
+     "task.alternatives.rebuilt.making.", "walk_ratio: 0.0001"),
+    ("speed_editing", "1.06: 0.88, 1.24: 1.06}", "1.06: 2.88, 1.24: 1.06}",
+     "task.alternatives.edited.making.source_speed.$direction.sped_up.$speed.1.06", "sped_up: {$speed"),
+    ("fourier_naturalness", "method: fourier, harmonics: 2}", "method: pca, share: 3}",
+     "task.alternatives.synthetic.making.share", "share: 3}"),
+    ("fourier_naturalness", "  making:\n    style:", "  making:\n    height: 1.9\n    style:",
+     "stimulus.making.height", "height: 1.9"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("study", "old", "new", "place", "line"), MAKING)
+def test_a_walk_that_its_making_rules_out_is_told_at_the_making(tmp_path, study, old, new, place, line):
+    mistakes = [one for one in said(tmp_path, study, (old, new)).split("\n") if one.startswith(str(tmp_path))]
+    assert mistakes
+    written = (tmp_path / "s.yaml").read_text(encoding="utf-8").split("\n")
+    for mistake in mistakes:
+        number, rest = mistake.removeprefix(f"{tmp_path / 's.yaml'}:").split(":", 1)
+        assert place in rest
+        assert line in written[int(number) - 1]
+
+
+def test_a_speed_that_the_actor_cannot_walk_at_is_told_at_the_speed_whatever_the_making(tmp_path):
+    says = said(tmp_path, "fourier_naturalness", ("proud: 1.06, decided", "proud: 2.9, decided"))
+    assert "stimulus.speed.$pair.proud: " in says
+    says = said(tmp_path, "fourier_naturalness", ("synthetic: {making", "synthetic: {speed: 2.9, making"))
+    assert "task.alternatives.synthetic.speed: " in says
+
+
+def test_captured_walks_at_a_speed_that_the_actor_does_not_cover_are_refused_in_any_task(tmp_path):
+    change = (
+        "making: {method: poulaine, source_speed: $speed, points: $points, interpolation: $interpolation}",
+        "actor: F2",
+    )
+    says = said(
+        tmp_path, "poulaine_reconstruction", change, ("speed: [0.88, 1.06, 1.24] ", "speed: [0.88, 1.06, 2.4] ")
+    )
+    assert "factors.speed[2]: actor F1: speed 2.4 m/s is outside the cycles there are" in says
+
+
 RATING = [
     ("minimum: 0, maximum: 4", "minimum: 4, maximum: 4", "minimum 4 is not below maximum 4"),
     ("step: 1,", "step: 3,", "steps of 3 do not lead from 0 to 4"),
