@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from protocols.gaze import REGIONS
 from protocols.mistake import Mistake, Place, no_such
-from protocols.planned_tests import Columns, test_mistakes
+from protocols.planned_tests import Columns, anova_factor_mistakes, test_mistakes
 from protocols.possible import Possible, Span, condition_mistakes
 from protocols.study import FurtherAnalysis, Level, Study
 
@@ -142,7 +142,10 @@ def _factors_of_tests(study: Study, plan: FurtherAnalysis, at: Place) -> Iterato
             yield Mistake((*at, "mixed_model", "factors"), message)
     for place, names, known, what in named:
         for i, name in enumerate(names):
-            if name not in known:
+            if name not in known and name in within + between:
+                other = "within" if name in within else "between"
+                yield Mistake((*at, *place, i), f"{name} is a {other} factor; name it under {other}")
+            elif name not in known:
                 yield Mistake((*at, *place, i), no_such(name, known, what))
             elif name in factors and len(factors[name]) < 2:
                 yield Mistake((*at, *place, i), f"{name} has one level; a factor needs two")
@@ -151,11 +154,11 @@ def _factors_of_tests(study: Study, plan: FurtherAnalysis, at: Place) -> Iterato
 
 
 def _equivalence_and_regression(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake]:
-    in_anova = plan.anova.within + plan.anova.between
+    factors = [*within_factors(study, plan), *study.participants.between]
     for i, same in enumerate(plan.equivalence):
         for field, factor in (("factor", same.factor), ("by", same.by)):
-            if factor is not None and factor not in in_anova:
-                yield Mistake((*at, "equivalence", i, field), no_such(factor, in_anova, "factor of the anova"))
+            if factor is not None:
+                yield from anova_factor_mistakes(plan, factor, factors, (*at, "equivalence", i, field))
         if same.by == same.factor:
             yield Mistake((*at, "equivalence", i, "by"), f"{same.by} is the factor compared; name another or none")
     if plan.regression is None:

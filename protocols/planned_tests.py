@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from difflib import get_close_matches
 
 from protocols.further_tests import DPrime, Proportions, Psychometric, TTest
 from protocols.mistake import Mistake, Place, no_such
@@ -22,13 +23,13 @@ def test_mistakes(
     """
     for i, test in enumerate(plan.t_tests):
         yield from _t_test(study, test, (*at, "t_tests", i), within)
-    in_anova = [*plan.anova.within, *plan.anova.between]
+    factors = [*within, *study.participants.between]
     for i, pairs in enumerate(plan.pairs):
         for field, names in (("factors", pairs.factors), ("by", pairs.by or [])):
-            yield from _known(names, in_anova, (*at, "pairs", i, field), "factor of the anova")
+            for j, name in enumerate(names):
+                yield from anova_factor_mistakes(plan, name, factors, (*at, "pairs", i, field, j))
         for name in set(pairs.factors) & set(pairs.by or []):
             yield Mistake((*at, "pairs", i, "by"), f"{name} is a factor compared; name another or none")
-    factors = [*within, *study.participants.between]
     for i, test_of in enumerate(plan.proportions):
         yield from _answers(test_of, (*at, "proportions", i), factors, columns)
     if plan.d_prime is not None:
@@ -38,6 +39,18 @@ def test_mistakes(
 
 
 test_mistakes.__test__ = False  # type: ignore[attr-defined]  # not a test of ours, whatever its name
+
+
+def anova_factor_mistakes(plan: FurtherAnalysis, name: str, factors: Sequence[str], where: Place) -> Iterator[Mistake]:
+    """What is wrong with a name that must stand in the anova, too; factors: those that the study has.
+
+    Only they are suggested, never what somebody misspelt in the anova; that is told there.
+    """
+    in_anova = [*plan.anova.within, *plan.anova.between]
+    if name not in factors:
+        yield Mistake(where, no_such(name, factors, "factor of the anova"))
+    elif name not in in_anova and not get_close_matches(name, [f for f in in_anova if f not in factors], n=1):
+        yield Mistake(where, f"{name} is not in the anova; add it there, or remove it here")
 
 
 def _known(names: Iterable[str], known: Sequence[str], where: Place, what: str) -> Iterator[Mistake]:

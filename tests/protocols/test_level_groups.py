@@ -55,3 +55,25 @@ def test_tests_and_figures_that_cannot_be(old: str, new: str, says: str) -> None
     found = mistakes(GROUPS, (old, new))
     assert len(found) == 1
     assert says in found[0]
+
+
+ANOVA = "within: [actor, speed, start]"
+EQUAL = "{factor: speed, bound: 0.0003}"
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ([(ANOVA, "within: [actor, sped, start]")], ["sped is no within factor; did you mean speed?"]),
+        ([(ANOVA, "within: [actor, sped, start]"), (EQUAL, "{factor: spede, bound: 0.0003}")],
+         ["sped is no within factor; did you mean speed?", "spede is no factor of the anova; did you mean speed?"]),
+        ([(ANOVA, "within: [actor, sped, start]"), (EQUAL, "{factor: sped, bound: 0.0003}")],
+         ["sped is no within factor; did you mean speed?", "sped is no factor of the anova; did you mean speed?"]),
+        ([(ANOVA, "within: [actor, start]")], ["speed is not in the anova; add it there, or remove it here"]),
+        ([(ANOVA, "within: [actor, speed, start, sex]"), ("between: [sex]\n", "between: []\n")],
+         ["sex is a between factor; name it under between"]),
+    ],
+)  # fmt: skip
+def test_only_factors_that_the_study_has_are_suggested(changes, says) -> None:
+    found = mistakes("", *changes)
+    assert [one.partition(": ")[2] for one in found] == says, found
