@@ -174,7 +174,7 @@ WRONG = {
     "  equivalence: [{factor: speed, bound: 1, by: speed}]": "is the factor compared",
     "  regression: {of: actor, on: {height: {F1: 1.7}}}": "the height of F2, M1, M2 is missing",
     "  regression: {of: speed, on: {a: {'0.8': 1, '1.0': 2, '1.2': 3}, b: {'0.8': 1, '1.0': 2, '1.2': 4}}}": "too few",
-    "  aligned_rank_transform: {within: [sex]}": "sex is no within factor",
+    "  aligned_rank_transform: {within: [sex]}": "sex is a between factor; name it under between",
     "  aligned_rank_transform: {}": "name at least one factor",
     "  mixed_model: {stimulus: actor, factors: [actor]}": "the random stimulus already",
     "  mixed_model: {stimulus: sex, factors: [speed]}": "sex is no within factor",
