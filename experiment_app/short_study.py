@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from io import StringIO
 from typing import Any
 
@@ -26,6 +28,18 @@ SHORT_PAGES: dict[str, Any] = {
 """What the short version says instead, so that it is true of it."""
 
 
+SAID_INSTEAD = (
+    (r"It takes about [^.]*\.", "This is a short version of it, which takes about {minutes}."),
+    (r"The data may be published[^.]*\.", "In this demonstration they stay on this computer."),
+    (r"(walk|can be seen) for \w+ seconds", r"\1 for {seconds} seconds"),
+    (r"\s*If anything is unclear, please ask the experimenter now\.", ""),
+    (r"Please tell the experimenter that you are done\.", "The demonstration goes on in the terminal."),
+)
+"""Sentences of the shipped studies' pages that are not true of a demonstration, and what is."""
+
+IN_WORDS = ("", "a minute", "two minutes", "three minutes", "four minutes", "five minutes")
+
+
 def short_study(name: str) -> StudyFile:
     """A study with two levels of every factor, each condition once, after one training trial at most.
 
@@ -44,9 +58,35 @@ def short_study(name: str) -> StudyFile:
     document["study"] = f"{document['study']}_demo"
     document["repetitions"] = 1
     document.pop("breaks", None)
+    short = _parsed(yaml, document)
+    _tell_the_truth(document, short)
+    return _parsed(yaml, document)
+
+
+def _parsed(yaml: Any, document: Any) -> StudyFile:
     text = StringIO()
     yaml.dump(document, text)
     return parse_study(f"{document['study']}.yaml", text.getvalue())
+
+
+def _tell_the_truth(document: Any, short: StudyFile) -> None:
+    """Puts how long the short version takes, and what becomes of its data, into its pages."""
+    from experiment_app.check import expected_minutes
+
+    minutes = min(max(round(expected_minutes(short.study)), 1), len(IN_WORDS) - 1)
+    values = {"{minutes}": IN_WORDS[minutes], "{seconds}": f"{getattr(short.study.task, 'time_limit', None) or 0:g}"}
+    for page in _pages(document["pages"]):
+        text = page["text"]
+        for pattern, instead in SAID_INSTEAD:
+            for mark, value in values.items():
+                instead = instead.replace(mark, value)
+            text = re.sub(pattern.replace(" ", r"\s+"), instead, text)
+        page["text"] = type(page["text"])(text)
+
+
+def _pages(pages: Any) -> Iterator[Any]:
+    for page in pages.values():
+        yield from page if isinstance(page, list) else [page]
 
 
 def _shorten_walk_ratio(document: Any) -> None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 
 import pytest
 
-from experiment_app.check import checked_study
+from experiment_app.check import checked_study, expected_minutes
 from experiment_app.short_study import short_study
 from protocols.design import make_trials
 from protocols.study_file import shipped_studies
@@ -18,6 +19,20 @@ def test_every_shipped_study_has_a_short_version_without_mistakes(name, tmp_path
     (tmp_path / short.name).write_text(short.text, encoding="utf-8")
     assert checked_study(str(tmp_path / short.name)).study == short.study
     assert len(make_trials(short.study, 1)) == math.prod(map(len, short.study.factors.values())) <= 16
+
+
+@pytest.mark.parametrize("name", shipped_studies())
+def test_what_a_short_study_tells_its_participant_is_true_of_it(name):
+    study = short_study(name).study
+    (said,) = re.findall(r"takes about (\w+) minutes?", study.pages.consent.text)
+    minutes = {"a": 1, "two": 2, "three": 3}[said]
+    assert minutes == pytest.approx(expected_minutes(study), abs=0.6)
+    told = " ".join(page.text for page in study.pages.in_order)
+    assert "they stay on this computer" in told
+    for untrue in ("hour", "ten", "twenty", "28", "published", "experimenter"):
+        assert not re.search(rf"\b{untrue}\b", told), untrue
+    for seconds in re.findall(r"for (\S+) seconds", told):
+        assert float(seconds) == study.task.time_limit
 
 
 @pytest.mark.parametrize("name", shipped_studies())
