@@ -15,17 +15,17 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analysis.aligned_ranks import art_anova
-from analysis.comparisons import pairwise
-from analysis.crossed_effects import mixed_model
-from analysis.equivalence_tests import equivalence
 from analysis.errors import AnalysisError
-from analysis.linear_regression import regression
-from analysis.marginal_means import MODELS
-from analysis.power import power_rm_anova
-from analysis.psychometric_functions import psychometric
-from analysis.repeated_measures import anova
-from analysis.student import t_tests
+from analysis.power.formulas import power_rm_anova
+from analysis.statistics.aligned_ranks import art_anova
+from analysis.statistics.comparisons import pairwise
+from analysis.statistics.crossed_effects import mixed_model
+from analysis.statistics.equivalence_tests import equivalence
+from analysis.statistics.linear_regression import regression
+from analysis.statistics.marginal_means import MODELS
+from analysis.statistics.psychometric_functions import psychometric
+from analysis.statistics.repeated_measures import anova
+from analysis.statistics.student import t_tests
 
 Found = Iterator[tuple[str, str, Any, Any]]  # what, "relative" or "absolute", ours, R's
 ANOVA = {

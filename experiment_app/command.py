@@ -221,7 +221,7 @@ def analyse(
     ),
 ) -> int:
     """Follow the study file's planned analysis: tables, figures and one self-contained report."""
-    from analysis.planned import analyse as planned_analysis
+    from analysis.planned_analysis import analyse as planned_analysis
     from experiment_app.derived import Derived, note_derived
 
     with out.status("Analysing"):
@@ -263,7 +263,7 @@ def power(
     """
     import os
 
-    from analysis.power_study import (
+    from analysis.power.study import (
         dask_client,
         join_parts,
         power_figure,

@@ -121,7 +121,7 @@ def _make_again(folder: Path, made: Derived) -> None:
     """Makes an export or a report again from the journals that are left; removes one nobody is left in."""
     from analysis.exports.exporting import export as write_export
     from analysis.exports.tree import remove_tree
-    from analysis.planned import analyse
+    from analysis.planned_analysis import analyse
     from experiment_app.participants import journals
 
     somebody = bool(journals(folder))

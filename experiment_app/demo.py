@@ -40,7 +40,7 @@ SEED = 2022
 
 def run_demo(name: str, folder: Path, *, off_screen: bool, say: Callable[[str], None], progress: ShowProgress) -> int:
     """Runs the demo of a study into a folder that did not exist before, and says where everything is."""
-    from analysis.planned import analyse
+    from analysis.planned_analysis import analyse
 
     study = short_study(name)
     folder = _fresh(folder)

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from analysis.method_comparison import Comparison, ComparisonReport, MethodRow, RebuildingError, write_report
-from analysis.method_figures import Film, PointCloud, Rebuilt
+from analysis.walk_methods.comparison import Comparison, ComparisonReport, MethodRow, RebuildingError, write_report
+from analysis.walk_methods.figures import Film, PointCloud, Rebuilt
 from experiment_app.errors import UsageError
 from experiment_app.terminal import ShowProgress, unseen
 from stimuli.actors import ActorError, load_actor

@@ -13,7 +13,7 @@ import sys
 import pandas as pd
 
 from analysis import mixed_model
-from analysis.intervals import ordinary
+from analysis.statistics.intervals import ordinary
 
 
 def main(path: str) -> None:

@@ -15,7 +15,7 @@ import pandas as pd
 
 from analysis import anova, mixed_model, normalised_gait, pairwise, regression
 from analysis.apa import anova_sentence
-from analysis.plan import read_plan
+from analysis.planned.plan import read_plan
 from protocols.study_file import read_study
 
 WITHIN, BETWEEN = ["actor_sex", "character"], ["viewing", "participant_gender"]

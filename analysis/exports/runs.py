@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from analysis.errors import AnalysisError
-from analysis.journal import journals_of, read_records
+from analysis.recorded.journal import journals_of, read_records
 
 SAFETY = 1.0
 """s at least between two sittings of a run, where the computer's clock does not tell how long it was."""

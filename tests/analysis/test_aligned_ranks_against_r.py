@@ -7,8 +7,8 @@ import pytest
 from scipy import stats
 
 from analysis import art_anova, art_contrasts
-from analysis.aligned_ranks import aligned_ranks
-from analysis.cells import cell_means
+from analysis.statistics.aligned_ranks import aligned_ranks
+from analysis.statistics.cells import cell_means
 from tests.analysis.reference import arguments, expected, table
 
 SETS = ["11_art_5x3_percent", "12_art_mixed_likert", "18_higgins1990_table5", "19_higgins_abc"]

@@ -11,7 +11,7 @@ import pytest
 from scipy import stats
 
 from analysis import emmeans, pairwise
-from analysis.studentized_range import critical_value, survival
+from analysis.statistics.studentized_range import critical_value, survival
 from tests.analysis.reference import arguments, expected, table
 from tests.analysis.test_anova_against_r import SETS, close
 

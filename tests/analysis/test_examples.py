@@ -12,9 +12,9 @@ import pandas as pd
 import pytest
 
 import analysis.examples
-from analysis import journal
-from analysis.plan import read_plan
-from analysis.trials import trials_table
+from analysis.planned.plan import read_plan
+from analysis.recorded import journal
+from analysis.recorded.trials import trials_table
 from experiment_app.simulate import simulate
 from protocols.study_file import read_study, shipped_studies
 

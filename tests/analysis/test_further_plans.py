@@ -11,10 +11,10 @@ import pandas as pd
 import pytest
 
 from analysis import AnalysisError, art_anova, equivalence, mixed_model, regression
-from analysis.figure_checks import session_course
-from analysis.plan import plan_of, read_plan
-from analysis.planned import AnalysisOutcome, analyse
-from analysis.trials import _add_derived
+from analysis.figures.checks import session_course
+from analysis.planned.plan import plan_of, read_plan
+from analysis.planned_analysis import AnalysisOutcome, analyse
+from analysis.recorded.trials import _add_derived
 from protocols.consistency import inconsistencies
 from protocols.study_file import StudyFileError, parse_study
 from tests.analysis.recorded import study_text, write_study
@@ -136,7 +136,7 @@ def test_every_participant_is_a_dot_of_the_raincloud(analysed: tuple[Path, Path,
 def test_the_course_over_the_session_shows_a_drift_and_no_condition(
     analysed: tuple[Path, Path, AnalysisOutcome],
 ) -> None:
-    from analysis.cells import cell_means
+    from analysis.statistics.cells import cell_means
 
     _, out, _ = analysed
     trials = pd.read_csv(out / "trials.csv")

@@ -10,10 +10,10 @@ import pandas as pd
 import pytest
 
 from analysis import AnalysisError, anova
-from analysis.exclusions import matching, selected
-from analysis.journal import read_journal, read_study
-from analysis.plan import plan_of, read_plan
-from analysis.planned import AnalysisOutcome, analyse
+from analysis.planned.plan import plan_of, read_plan
+from analysis.planned_analysis import AnalysisOutcome, analyse
+from analysis.recorded.exclusions import matching, selected
+from analysis.recorded.journal import read_journal, read_study
 from tests.analysis.recorded import PERCEIVED, journal_lines, study_text, write_run, write_study
 from tests.journals import rechained, rewrite
 
@@ -127,7 +127,7 @@ def test_too_few_participants_still_get_their_tables(tmp_path: Path, participant
 
 
 def test_pilot_runs_are_called_pilot_runs(tmp_path: Path) -> None:
-    from analysis.journal import read_study
+    from analysis.recorded.journal import read_study
 
     folder = write_study(tmp_path / "s", 2)
     for journal in folder.glob("sourcedata/sub-*/run-*/journal.jsonl"):
@@ -269,7 +269,7 @@ def test_assumptions_stand_beside_the_test_and_in_a_table(analysed: tuple[Path, 
 
 
 def test_tables_for_latex_escape_what_latex_would_read(analysed: tuple[Path, Path, AnalysisOutcome]) -> None:
-    from analysis.latex import escaped
+    from analysis.report.latex import escaped
 
     _, out, _ = analysed
     text = (out / "tables.tex").read_text(encoding="utf-8")

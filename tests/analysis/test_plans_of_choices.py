@@ -14,11 +14,11 @@ import pytest
 from scipy import stats
 
 from analysis import analyse, d_prime, emmeans, pairwise, proportions, psychometric, t_tests
-from analysis.answers import answers, readable
 from analysis.errors import AnalysisError
-from analysis.gait_measures import gaze_rows
-from analysis.plan import plan_of
-from analysis.trials import used_trials
+from analysis.planned.plan import plan_of
+from analysis.recorded.answers import answers, readable
+from analysis.recorded.gait_measures import gaze_rows
+from analysis.recorded.trials import used_trials
 from experiment_app.simulate import simulate
 from protocols.consistency import inconsistencies
 from protocols.study_file import StudyFileError, parse_study

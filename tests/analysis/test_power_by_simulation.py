@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 
 from analysis import AnalysisError, anova, combine_power, power_by_simulation, t_tests
-from analysis.many_anovas import many_anovas
-from analysis.simulated_experiments import cell_means_of, experiment_model
+from analysis.power.simulated_experiments import cell_means_of, experiment_model
+from analysis.statistics.many_anovas import many_anovas
 from tests.analysis.recorded import study_text
 
 
@@ -85,7 +85,7 @@ def test_t_tests_of_simulated_experiments_are_t_tests(study: dict[str, Any]) -> 
     ]
     data = pd.DataFrame(rows, columns=["who", "actor", "y"])
     table = t_tests(data, "y", "who", each="actor", against=0.0069).set_index("level")
-    from analysis.simulation_power import _t_p
+    from analysis.power.simulation import _t_p
 
     assert _t_p(values, model, "actor", "F1", 0.0069)[0] == pytest.approx(table.loc["F1", "p"], rel=1e-8)
 

@@ -11,10 +11,10 @@ import pandas as pd
 import pytest
 
 from analysis import AnalysisError
-from analysis.many_anovas import many_anovas
-from analysis.power_study import join_parts, power_notes, read_part, simulate_power
-from analysis.simulated_experiments import cell_means_of, experiment_model
-from analysis.simulation_power import as_dict
+from analysis.power.simulated_experiments import cell_means_of, experiment_model
+from analysis.power.simulation import as_dict
+from analysis.power.study import join_parts, power_notes, read_part, simulate_power
+from analysis.statistics.many_anovas import many_anovas
 from experiment_app.command import run
 from tests.analysis.recorded import study_text
 
@@ -77,7 +77,7 @@ def test_without_dask_the_way_out_is_said(monkeypatch: pytest.MonkeyPatch, capsy
     def missing(name: str) -> Any:
         raise ImportError(name)
 
-    monkeypatch.setattr("analysis.power_study.import_module", missing)
+    monkeypatch.setattr("analysis.power.study.import_module", missing)
     assert run(["power", "walk_ratio", "--dask", "tcp://scheduler:8786"]) == 1
     assert "dask is not installed" in capsys.readouterr().err
 

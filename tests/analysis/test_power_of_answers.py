@@ -9,9 +9,9 @@ import pytest
 from scipy import stats
 
 from analysis import AnalysisError, power_by_simulation
-from analysis.simulated_answers import Choosers, Raters
-from analysis.simulated_experiments import cell_means_of, experiment_model
-from analysis.simulation_power import as_dict
+from analysis.power.simulated_answers import Choosers, Raters
+from analysis.power.simulated_experiments import cell_means_of, experiment_model
+from analysis.power.simulation import as_dict
 from experiment_app.behaviour import _shifted
 from protocols.study_file import read_study
 

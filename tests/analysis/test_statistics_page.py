@@ -75,7 +75,7 @@ def test_statsmodels_mixed_model_and_pingouins_bayes_factor_agree_with_ours() ->
     from statsmodels.regression.mixed_linear_model import MixedLM
 
     from analysis import mixed_model
-    from analysis.bayes_factor import jzs
+    from analysis.statistics.bayes_factor import jzs
     from tests.analysis.reference import expected, table
 
     for t, n in ((0.4, 12), (2.3, 22), (8.44, 22)):

@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 
 from analysis import normality, t_tests, t_tests_from_summary
-from analysis.bayes_factor import jzs
-from analysis.effect_size import HUGE, t_noncentrality_limits
+from analysis.statistics.bayes_factor import jzs
+from analysis.statistics.effect_size import HUGE, t_noncentrality_limits
 from tests.analysis.reference import arguments, expected, path, table
 
 CONDITIONS = ["cond1", "cond2", "cond3", "cond4"]

@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 
 from analysis.errors import AnalysisError
-from analysis.plan import plan_of
-from analysis.track_tests import track_tests
+from analysis.planned.plan import plan_of
+from analysis.planned.track_tests import track_tests
 
 STAIRCASE = {"kind": "adaptive", "of": "level", "yes": "correct == 1", "rule": {"kind": "staircase", "down_after": 1}}
 QUEST = {**STAIRCASE, "rule": {"kind": "quest_plus", "spreads": [1.0], "guess": 0.0, "lapses": [0.0]}}

@@ -26,7 +26,7 @@ def analysis_of_the_thesis() -> None:
     import pandas as pd
 
     from analysis import anova
-    from analysis.studentized_range import survival
+    from analysis.statistics.studentized_range import survival
 
     cells = product(range(22), ("F1", "F2", "M1", "M2"), (0.8, 1.0, 1.2), (80, 120), range(4))
     data = pd.DataFrame(cells, columns=["participant", "actor", "speed", "start", "repetition"])

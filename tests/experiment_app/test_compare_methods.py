@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from analysis.errors import AnalysisError
-from analysis.method_comparison import RebuildingError, published_order, rebuilding_anova
+from analysis.walk_methods.comparison import RebuildingError, published_order, rebuilding_anova
 from experiment_app.command import run
 
 CMU = Path(__file__).parents[2].parent / "shared" / "mocap" / "bvh" / "cmu"

@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from analysis.planned import analyse
+from analysis.planned_analysis import analyse
 from experiment_app.behaviour import latent_mean
 from experiment_app.check import checked_study
 from experiment_app.simulate import simulate

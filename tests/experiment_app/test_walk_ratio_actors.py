@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis.planned import analyse
+from analysis.planned_analysis import analyse
 from experiment_app.check import checked_study
 from experiment_app.simulate import simulate
 from experiment_app.staging import staged

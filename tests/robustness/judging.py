@@ -54,7 +54,7 @@ def spoiled_studies(text: str, folder: Path, count: int, seed: int = 0) -> Itera
 def journal_verdict(data: Path, study: str, participant: str, out: Path) -> str:
     """What becomes of a journal for whoever reads one: going on with the run, the analysis, an export."""
     from analysis.exports.exporting import export
-    from analysis.journal import read_study
+    from analysis.recorded.journal import read_study
     from experiment_app.opening import unfinished_run
     from experiment_app.participants import participant_number
     from experiment_app.run_folder import progress

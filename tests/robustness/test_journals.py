@@ -10,7 +10,7 @@ from random import Random
 
 import pytest
 
-from analysis.planned import analyse
+from analysis.planned_analysis import analyse
 from protocols.record import Answered, decode_line, encode_line
 from tests.experiment_app.sessions import opened, play
 from tests.journals import resealed, rewrite

@@ -1,0 +1,1 @@
+"""Figures of a planned analysis, each with every participant visible."""

@@ -1,0 +1,1 @@
+"""The analysis a study file plans: what it asks for, and what was found."""

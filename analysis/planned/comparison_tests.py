@@ -1,0 +1,75 @@
+"""Planned t tests between levels or groups, one-sample tests over everything, and planned pairs of marginal means."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pandas as pd
+
+from analysis import apa
+from analysis.planned.further_test import FurtherTest
+from analysis.planned.plan import AnalysisPlan
+from analysis.recorded.exclusions import selected
+from analysis.statistics.comparisons import pairwise
+from analysis.statistics.student import t_tests
+
+
+def comparison_tests(used: pd.DataFrame, plan: AnalysisPlan) -> FurtherTest:
+    """Paired, independent and overall one-sample t tests: factor, each, where, reference, as `t_tests`, sentence."""
+    parts: list[pd.DataFrame] = []
+    notes: list[str] = []
+    for asked in plan.comparisons:
+        chosen = selected(used, asked.where)
+        named = [name for name in (asked.each, asked.factor) if name is not None]
+        table = t_tests(
+            chosen, plan.measure, "participant", each=asked.each, levels={name: plan.levels[name] for name in named},
+            against=asked.against, paired=asked.factor if asked.kind == "paired" else None,
+            independent=asked.factor if asked.kind == "independent" else None,
+        )  # fmt: skip
+        notes += table.attrs["notes"]
+        parts.append(table.assign(factor=asked.factor or "", each=asked.each or "", where=asked.where or "",
+                                  reference=asked.label if asked.kind == "against" else ""))  # fmt: skip
+    table = pd.concat(parts, ignore_index=True)
+    first = ["factor", "each", "where", "reference"]
+    table = table[[*first, *(name for name in table if name not in first)]]
+    table["sentence"] = [_sentence(row) for row in table.to_dict("records")]
+    return FurtherTest("comparisons", table, notes=_worth_saying(notes))
+
+
+def _sentence(row: dict[str, Any]) -> str:
+    where = f"{row['each']} {row['level']}: " if row["each"] else ""
+    what = f"{row['a']} − {row['b']}" if row["a"] else f"mean − {row['reference']}"
+    welch = "Welch's " if row["test"] == "Welch" else ""
+    return f"{where}{what} = {apa.figures(row['estimate'])}, {welch}{apa.t_sentence(row)}"
+
+
+def _worth_saying(notes: list[str]) -> tuple[str, ...]:
+    """Notes once each, without those on averaging over trials, which every test does."""
+    return tuple(dict.fromkeys(note for note in notes if "were averaged" not in note))
+
+
+def pair_tests(used: pd.DataFrame, plan: AnalysisPlan) -> FurtherTest:
+    """Planned pairs of marginal means and simple effects: factors, by, level, the columns of `pairwise`, sentence."""
+    parts: list[pd.DataFrame] = []
+    notes: list[str] = []
+    for asked in plan.pairs:
+        table = pairwise(
+            used, plan.measure, "participant", plan.within, plan.between, factors=list(asked.factors),
+            by=list(asked.by), model=asked.model, adjust=asked.adjust,
+            levels={name: plan.levels[name] for name in (*plan.within, *plan.between)},
+        )  # fmt: skip
+        notes += table.attrs["notes"]
+        level = [" × ".join(str(row[name]) for name in asked.by) for row in table.to_dict("records")]
+        table = table.drop(columns=list(asked.by)).assign(level=level)
+        parts.append(table.assign(factors=" × ".join(asked.factors), by=" × ".join(asked.by), adjust=asked.adjust))
+    table = pd.concat(parts, ignore_index=True)
+    first = ["factors", "by", "level", "adjust"]
+    table = table[[*first, *(name for name in table if name not in first)]]
+    table["sentence"] = [_pair_sentence(row) for row in table.to_dict("records")]
+    return FurtherTest("pairs", table, notes=_worth_saying(notes))
+
+
+def _pair_sentence(row: dict[str, Any]) -> str:
+    where = f"{row['by']} {row['level']}: " if row["by"] else ""
+    test = apa.t_sentence({**row, "d": row["d_av"]})
+    return f"{where}{row['a']} − {row['b']} = {apa.figures(row['estimate'])}, {test}"

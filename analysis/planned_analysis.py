@@ -1,0 +1,153 @@
+"""From a study's recorded runs to the files of its planned analysis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pandas as pd
+
+from analysis.apa import anova_sentence
+from analysis.errors import AnalysisError
+from analysis.figures.check_plots import check_plots, check_quantiles, quantiles_table
+from analysis.figures.checks import session_course
+from analysis.figures.drawing import DrawnFigure
+from analysis.figures.planned import draw
+from analysis.planned.computing import compute
+from analysis.planned.plan import read_plan
+from analysis.planned.results import PlannedResults
+from analysis.recorded.journal import read_study
+from analysis.recorded.trials import trials_table
+from analysis.report.headlines import headlines
+from analysis.report.latex import latex_tables
+from analysis.report.page import Drawn, report
+from analysis.statistics.marginal_means import emmeans_of, marginal_means
+from analysis.writing import table_bytes, write_bytes
+
+
+@dataclass(frozen=True)
+class AnalysisOutcome:
+    """What `analyse` did: files written, sentences of warning, and the results in short."""
+
+    paths: tuple[Path, ...]
+    warnings: tuple[str, ...]
+    headlines: tuple[str, ...]
+    participants: int
+    simulated: bool
+
+    @property
+    def report(self) -> Path:
+        return next(path for path in self.paths if path.name == "report.html")
+
+
+def analyse(study_folder: Path, out: Path, unfinished: bool = False) -> AnalysisOutcome:
+    """Run the analysis planned in the study file of the recorded runs, and write its results into `out`.
+
+    study_folder: DATA/<study>, with one journal a run under sourcedata; unfinished: include runs that
+    were not finished. Writes trials.csv, cell_means.csv, descriptives.csv, anova.csv, posthoc.csv,
+    ttests.csv, normality.csv, assumptions.csv, qq.csv, a table for each further planned test, tables.tex,
+    the planned figures (PNG and SVG) and report.html; further measures get a folder each. What cannot be
+    computed (too few participants, say) is a warning; the tables of what was recorded are still written. The
+    same journals give the same bytes. Raises AnalysisError for what a person must put right.
+    """
+    study_folder, out = Path(study_folder), Path(out)
+    if (study_folder / "sourcedata").resolve() in [out.resolve(), *out.resolve().parents]:
+        raise AnalysisError(f"--out {out}: a report goes into a folder of its own, never among the journals.")
+    recorded = read_study(study_folder, unfinished)
+    if not recorded.runs:
+        reasons = "; ".join(f"{who}: {why}" for who, why in recorded.left_out)
+        raise AnalysisError(
+            f"{study_folder}: none of the {recorded.journals} recorded runs can be analysed ({reasons})."
+        )
+    first = recorded.runs[0]
+    plan = read_plan(str(first.header.get("study_text", "")), first.name)
+    results = compute(recorded, plan, trials_table(recorded, plan))
+    files: dict[str, bytes] = {"trials.csv": table_bytes(_trials(results))}
+    drawn: dict[str, Drawn] = {}
+    results = _of_one_measure(results, "", files, drawn)
+    also = [_of_one_measure(other, f"{other.plan.measure}/", files, drawn) for other in results.also]
+    results = replace(results, also=tuple(also))
+    files["report.html"] = report(results, drawn, [*files, "report.html"]).encode("utf-8")
+    paths = [write_bytes(out / name, content) for name, content in files.items()]
+    return AnalysisOutcome(
+        tuple(paths),
+        (
+            *results.warnings,
+            *(w for other in also for w in other.warnings),
+            *(f"{who}: {why}; left out." for who, why in recorded.left_out),
+        ),
+        tuple(headlines(results)),
+        len(recorded.runs),
+        results.simulated > 0,
+    )
+
+
+def _of_one_measure(
+    results: PlannedResults, folder: str, files: dict[str, bytes], drawn: dict[str, Drawn]
+) -> PlannedResults:
+    """Adds the files and pictures of one measure; returns the results with what could not be drawn as a warning."""
+    figures, complaints = _figures(results)
+    points = check_quantiles(results)
+    drawn[results.plan.measure] = Drawn(figures, check_plots(points, results.plan.label))
+    tables = {**_tables(results), "qq.csv": quantiles_table(points)}
+    if results.means is not None and any(figure.kind == "order" for figure in results.plan.figures):
+        tables["order.csv"] = session_course(results.means, results.used)
+    files |= {f"{folder}{name}": table_bytes(table) for name, table in tables.items()}
+    files[f"{folder}tables.tex"] = latex_tables(results).encode("utf-8")
+    for figure in figures:
+        files |= {f"{folder}{figure.name}.png": figure.png, f"{folder}{figure.name}.svg": figure.svg}
+    return replace(results, warnings=(*results.warnings, *complaints))
+
+
+def _trials(results: PlannedResults) -> pd.DataFrame:
+    return results.trials if results.plan.exclusions else results.trials.drop(columns="excluded")
+
+
+def _tables(results: PlannedResults) -> dict[str, pd.DataFrame]:
+    anova = results.anova.assign(sentence=[anova_sentence(row) for row in results.anova.to_dict("records")])
+    tables = {
+        "cell_means.csv": results.cells,
+        "descriptives.csv": results.descriptives,
+        "anova.csv": anova,
+        "marginal_means.csv": _marginal_means(results),
+        "posthoc.csv": results.posthoc,
+        "ttests.csv": results.ttests,
+        "normality.csv": results.normality,
+        "assumptions.csv": results.assumptions,
+    }
+    second = {
+        "regression": "regression_cases.csv", "aligned_rank_transform": "aligned_rank_contrasts.csv",
+        "proportions": "proportions_participants.csv", "d_prime": "d_prime_participants.csv",
+        "psychometric": "psychometric_fits.csv", "adaptive": "adaptive_tracks.csv",
+    }  # fmt: skip
+    for test in results.further:
+        tables[f"{test.kind}.csv"] = test.table
+        if test.kind in second:
+            tables[second[test.kind]] = test.more
+    return tables
+
+
+def _marginal_means(results: PlannedResults) -> pd.DataFrame:
+    """Estimated marginal means of every effect of the ANOVA: effect, level, emmean, se, df, 95 % limits."""
+    columns = ["effect", "level", "emmean", "se", "df", "ci_low", "ci_high"]
+    parts = []
+    if results.means is not None:
+        for effect in results.anova["effect"]:
+            factors = effect.split(":")
+            table = emmeans_of(marginal_means(results.means, factors), results.plan.model)
+            level = [" × ".join(cell) for cell in table[factors].itertuples(index=False)]
+            parts.append(table.assign(effect=effect, level=level)[columns])
+    return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=columns)
+
+
+def _figures(results: PlannedResults) -> tuple[list[DrawnFigure], list[str]]:
+    drawn: list[DrawnFigure] = []
+    complaints: list[str] = []
+    for figure in results.plan.figures:
+        if results.means is None and figure.kind not in ("t_tests", "regression"):
+            continue  # why there are no means is a warning already
+        try:
+            drawn.append(draw(figure, results))
+        except AnalysisError as error:
+            complaints.append(f"A figure was not drawn: {error}")
+    return drawn, complaints

@@ -1,0 +1,1 @@
+"""Power: from an effect size by formula, and by simulating the study's own participants, trials and analysis."""

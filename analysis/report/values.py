@@ -1,0 +1,73 @@
+"""How the report writes single values in its tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from analysis import apa
+from analysis.figures.drawing import DrawnFigure
+from analysis.planned.results import PlannedResults, unit_decimals
+from analysis.report.markup import Cell, Markup, bullets, element, image, join
+
+Columns = dict[str, tuple[object, Cell]]
+D, F, P, T, BF = element("i", "d"), element("i", "F"), element("i", "p"), element("i", "t"), "BF₁₀"
+ADJUSTED = {"tukey": "Tukey", "bonferroni": "Bonferroni", "holm": "Holm"}
+HOLM_LIMITS = "With Holm the limits are Bonferroni's, wider than its p."
+
+
+def str_right(value: object) -> str:
+    return str(value)
+
+
+def p_cell(value: float) -> str:
+    if not math.isfinite(value):
+        return "–"
+    return "< .001" if value < 0.001 else apa.share(value, 3)
+
+
+def share_cell(value: float) -> str:
+    return apa.share(value) if math.isfinite(value) else "–"
+
+
+def epsilon_cell(value: float) -> str:
+    return "–" if not math.isfinite(value) else apa.share(value) if value < 0.995 else "1"
+
+
+def unit_cell(results: PlannedResults) -> tuple[Cell, int]:
+    """How values in the unit of the measure are written, and with how many decimals."""
+    decimals = unit_decimals(results)
+    return (lambda value: apa.number(value, decimals)), decimals
+
+
+def degrees_cell(value: float) -> str:
+    return apa.degrees(value) if math.isfinite(value) else "–"
+
+
+def bayes_cell(value: float) -> str:
+    return "–" if not math.isfinite(value) else "> 10 000" if value > 1e4 else apa.figures(value)
+
+
+def interval(low: float, high: float, decimals: int) -> str:
+    return f"[{apa.number(low, decimals)}, {apa.number(high, decimals)}]"
+
+
+def check_plot(plot: DrawnFigure | None) -> Markup:
+    """A small picture beside a test, folded away until asked for; nothing where there is none."""
+    if plot is None:
+        return Markup("")
+    picture = image(plot.svg, "image/svg+xml", plot.caption)
+    figure = element("figure", picture, element("figcaption", plot.caption), class_="check")
+    return element("details", element("summary", "Q–Q plot"), figure)
+
+
+def section(title: str, tables: Sequence[object], notes: Sequence[str], sentences: Sequence[str]) -> Markup:
+    """A test's part of the page: tables, notes, and its sentences to unfold."""
+    return join(
+        [
+            element("h2", title),
+            *tables,
+            *(element("p", note, class_="note") for note in notes if note),
+            element("details", element("summary", "The same as sentences"), bullets(sentences)),
+        ]
+    )

@@ -1,0 +1,1 @@
+"""Tests, models and intervals of tidy tables: they know columns, and nothing of studies, runs or reports."""

@@ -1,0 +1,1 @@
+"""What compares ways of making walks: tables, analysis of variance and figures of their errors."""
