@@ -9,7 +9,7 @@ from pathlib import Path
 from analysis.errors import AnalysisError
 from analysis.exports.runs import ExportedRun, read_runs
 from analysis.exports.tree import write_tree
-from analysis.journal import earlier_form
+from analysis.recorded.journal import earlier_form
 
 Files = Iterator[tuple[str, bytes]]
 FORMATS = ("bids", "psych-ds", "parquet", "csv")

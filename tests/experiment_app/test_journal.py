@@ -8,7 +8,7 @@ from collections import Counter
 
 import pytest
 
-from analysis.journal import read_study
+from analysis.recorded.journal import read_study
 from experiment_app.command import run as command
 from experiment_app.errors import RunError, UsageError
 from experiment_app.journal import append_line
