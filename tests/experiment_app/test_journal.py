@@ -82,7 +82,7 @@ def test_a_damaged_line_in_the_middle_is_named(tmp_path):
     run = opened(tmp_path)
     play(run)
     lines = run.run.journal.read_bytes().split(b"\n")
-    lines[4] = lines[4].replace(b"3", b"4", 1)
+    lines[4] = lines[4].replace(b'"time":', b'"time":1', 1)
     run.run.journal.write_bytes(b"\n".join(lines))
     with pytest.raises(UsageError, match=r"journal.jsonl: line 5: the line does not match its checksum"):
         journal_lines(run.run.journal)
