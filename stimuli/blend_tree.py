@@ -107,8 +107,17 @@ def _drawn(error: CoverageError, tree: Tree, wanted: Mapping[str, float]) -> Cov
 def many_weights(tree: Tree, wanted: Mapping[str, NDArray[Any]]) -> tuple[NDArray[np.intp], NDArray[np.floating]]:
     """`blend_weights` for N walkers at once: cycle indices and weights, both (N, M); unused places weigh nothing.
 
-    wanted: parameter -> (N,) values. Raises CoverageError outside the tree.
+    wanted: parameter -> (N,) values. Raises CoverageError, which draws what is covered and a walker outside it.
     """
+    try:
+        return _many_weights(tree, wanted)
+    except CoverageError:
+        for walker in range(len(next(iter(wanted.values())))):
+            blend_weights(tree, _of_one(wanted, walker))  # raises for the first walker outside
+        raise
+
+
+def _many_weights(tree: Tree, wanted: Mapping[str, NDArray[Any]]) -> tuple[NDArray[np.intp], NDArray[np.floating]]:
     if isinstance(tree, Leaf):
         count = len(next(iter(wanted.values())))
         return np.full((count, 1), tree.cycle, np.intp), np.ones((count, 1))
@@ -142,7 +151,7 @@ def _of_children(
     found = []
     for number in np.unique(child[part > 0.0]):
         own = np.flatnonzero((child == number) & (part > 0.0))
-        found.append((own, *many_weights(children[number], {name: v[own] for name, v in wanted.items()})))
+        found.append((own, *_many_weights(children[number], {name: v[own] for name, v in wanted.items()})))
     width = max((cycles.shape[1] for _, cycles, _ in found), default=1)
     cycles, weights = np.zeros((len(child), width), np.intp), np.zeros((len(child), width))
     for own, chosen, shares in found:

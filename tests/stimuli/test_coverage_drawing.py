@@ -1,11 +1,12 @@
 """The drawing of what an actor covers, in the message that refuses what lies outside."""
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from stimuli.actors import CYCLE_SPEEDS, METRONOME, load_actor, metronome_tree
-from stimuli.blend_tree import Branch, CoverageError, Leaf, blend_weights, covers
+from stimuli.blend_tree import Branch, CoverageError, Leaf, blend_weights, covers, many_weights
 from stimuli.coverage_drawing import COLUMNS, ROWS, coverage_drawing
 from stimuli.walker import drawn_pose
 
@@ -37,6 +38,20 @@ def test_a_path_is_drawn_where_the_captures_lie():
     assert sum(row.count("X") for row in rows) == 1
     with pytest.raises(CoverageError, match=r"complete: true[\s\S]*asked for"):
         blend_weights(PATH, {"speed": 1.0, "step_frequency": 118.0})
+
+
+def test_walkers_posed_all_at_once_are_refused_with_the_same_message_as_one():
+    """Also where the walker outside is neither slowest nor fastest, but off the path that step frequency follows."""
+    for tree, speeds, beats, outside in (
+        (GRID, [1.0, 1.6, 1.2], [90.0, 100.0, 110.0], 1),
+        (PATH, [0.9, 1.2, 1.5], [96.0, 97.0, 121.0], 1),
+    ):
+        with pytest.raises(CoverageError) as alone:
+            blend_weights(tree, {"speed": speeds[outside], "step_frequency": beats[outside]})
+        with pytest.raises(CoverageError) as together:
+            many_weights(tree, {"speed": np.array(speeds), "step_frequency": np.array(beats)})
+        assert str(together.value) == str(alone.value)
+        assert sum(row.count("X") for row in map_of(str(together.value))) == 1
 
 
 @given(st.floats(-5.0, 9.0), st.floats(0.0, 400.0))
