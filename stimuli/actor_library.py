@@ -150,7 +150,9 @@ def actor_of(stored_actor: StoredActor, body: Body | None = None) -> Actor:
     person = stored_actor.person
     worn = body or load_body("woman" if person.sex == "F" else "man")
     figure = Figure(scaled(worn.skeleton, person.height / worn.stature))
-    cycles = [walk_cycle(figure, cycle.walk, cycle.speed, cycle.step_frequency) for cycle in stored_actor.cycles]
+    cycles = [
+        walk_cycle(figure, cycle.walk, cycle.speed, cycle.step_frequency, calm=True) for cycle in stored_actor.cycles
+    ]
     return Actor(
         name=person.name,
         sex=person.sex,

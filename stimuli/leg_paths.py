@@ -1,4 +1,4 @@
-"""Where captured leg angles carry the hips, and where the swinging legs then carry the feet.
+"""Where captured leg angles carry the hips, and the legs that are swung and pushed off to fit the step.
 
 Each leg is looked at on its own clock, phase 0 its heel strike, the left one as seen in a mirror, so that both are
 written like a right leg. The hips are where the standing legs put them over feet that roll on the ground, least
@@ -14,16 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stimuli import contact
-from stimuli.blend import FOOT_CHANNELS
 from stimuli.contact import Sole
+from stimuli.foot_paths import PHASES, SAMPLES, FootPath, heel_rises, pitched, smoothed, still_in_stance
 from stimuli.legs import Leg, reach
 from stimuli.skeleton import Floats
 
 Bools = NDArray[np.bool_]
-
-SAMPLES = 256
-PHASES = np.arange(SAMPLES) / SAMPLES
-SMOOTHING = 6  # samples each way
 
 HIPS_HARMONICS = 10
 """Harmonics of the cycle in the hips' height and advance; of a walk whose sides are alike only the even ones."""
@@ -36,18 +32,12 @@ STEADY = 0.3
 """How much the odd harmonics of the advance are held to zero, in samples of a standing leg: left and right footprints
 and a forward sway once per cycle are told apart only while both feet are on the ground."""
 
-CLOSING = 0.15
-"""Share of swing in which a captured foot comes on to its footprint."""
-
-LOWERED = 0.12
-"""Share of swing, the last, in which the foot comes down; above the ground as long as it still moves ahead."""
-
-WITHIN_REACH = 0.03
-"""Share of swing, the last, in which the foot need not stay where its leg reaches: the hips still come nearer to where
-it will stand. Any longer and the knee would snap straight."""
-
 BUILT_REACH = 0.9996
 """Largest hip-ankle distance over leg length in a cycle as built (knee bent 3.2 degrees); blending needs the rest."""
+
+CALM_REACH = np.where(np.arange(SAMPLES) < 8, 0.9980, 0.9992)
+"""(N,) the same in a calm cycle: knee bent 5 degrees, 7 as the heel strikes. The knee of a leg that is nearly straight
+bends with the root of what its hip and ankle come nearer, so that it would snap; the hips are 1 mm lower for it."""
 
 CEILING_MARGIN = 0.0003
 """m below the highest place that the standing leg reaches at which the hips are aimed where they would be above."""
@@ -58,26 +48,8 @@ SWING_GAIN = (0.8, 1.35)
 PUSH_OFF = np.radians(12.0)
 """Largest change of the captured foot pitch at push-off (two standard deviations between people, S&M tables)."""
 
-LEAST_CLEARANCE = 0.012
-"""m, clearance of the lowest point at mid swing (Winter 1992: 1.3 cm on average)."""
-
-LATE_SHARE = 0.2
-"""Share of it that is kept until the foot comes down, so that it never brushes the ground on its way."""
-
-
-@dataclass(frozen=True, eq=False)
-class FootPath:
-    """A foot over PHASES, as it would roll on the ground at the place of its footprint.
-
-    pitch: as drawn; yaw, knee_yaw: rad; side: m; ankle: (N, 3) m from the footprint's forward place
-    """
-
-    stance: float
-    pitch: Floats
-    yaw: Floats
-    knee_yaw: Floats
-    side: Floats
-    ankle: Floats
+CALM_PUSH_OFF = np.radians(20.0)
+"""The same in a calm cycle: people complete far from their captures with feet that would not lift their heels."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,14 +96,19 @@ class Hips:
         )
 
 
-def leg_path(leg: Leg, sole: Sole, scale: float, side: dict[str, Floats], hips: Floats, stance: float) -> LegPath:
+def leg_path(
+    leg: Leg, sole: Sole, scale: float, side: dict[str, Floats], hips: Floats, stance: float, calm: bool
+) -> LegPath:
     """A leg of a walk before anything is fitted, at the right side's heel strike.
 
-    side: the side's signals over PHASES; hips: (N, 3, 3) world rotation of the hips; scale: leg length m
+    side: the side's signals over PHASES; hips: (N, 3, 3) world rotation of the hips; scale: leg length m; calm: whether
+    its twitches are taken out. The yaw of a foot that points steeply down is mostly roll, and a calm one is spared it.
     """
-    yaw = _still_in_stance(side["foot_yaw"], stance)
-    place = scale * _still_in_stance(side["foot_shift"], stance)
-    foot = _pitched(sole, side["foot"], yaw, side["knee_yaw"], place, stance)
+    turned = side["foot_yaw"] * np.cos(side["foot"]) if calm else side["foot_yaw"]
+    yaw = still_in_stance(turned, stance)
+    place = scale * still_in_stance(side["foot_shift"], stance)
+    pitch = heel_rises(side["foot"], stance) if calm else side["foot"]
+    foot = pitched(sole, pitch, yaw, side["knee_yaw"], place, stance, calm)
     hip = hips @ leg.hip
     hip[:, 0] += scale * side["hips_shift"]
     vector = _leg_vector(leg, side["thigh"], side["shank"], foot.ankle[:, 0] - hip[:, 0])
@@ -149,51 +126,6 @@ def carried_hips(leg: Leg, sole: Sole, paths: Sequence[LegPath], stride: float) 
     height = _height(leg, swung, harmonics, advance, stride)
     hips = Hips(harmonics, height, advance)
     return hips, [replace(path, foot=_pushed_off(sole, path, hips.at(path.phases), stride)) for path in swung]
-
-
-def foot_channels(leg: Leg, path: LegPath, hips: Hips, stride: float) -> Floats:
-    """(N, 6) FOOT_CHANNELS of a leg on its own clock (contact.clock)."""
-    foot, own = path.foot, hips.at(path.phases)
-    swing = contact.swing_progress(PHASES)
-    phases = contact.phase_of(PHASES, foot.stance)
-
-    def on_clock(values: Floats) -> Floats:
-        return np.interp(phases, np.append(PHASES, 1.0), np.append(values, values[0]))
-
-    carried = own + path.hip[:, 1:] + path.vector  # ankle (up, forward) if the leg had its way
-    leave = contact.smooth_step(swing / 0.07) * contact.smooth_step((1.0 - swing) / LOWERED)
-    low, high = (contact.smooth_step((1.0 - swing) / before) for before in (LOWERED, 0.6))
-    least = LEAST_CLEARANCE * contact.smooth_step(swing / 0.07) * (LATE_SHARE * low + (1.0 - LATE_SHARE) * high)
-    clearance = least + leave * _soft_positive(on_clock(carried[:, 0] - foot.ankle[:, 1]) - least)
-
-    rolled = on_clock(foot.ankle[:, 2]) + path.ahead
-    course = contact.footprint_travel(phases, foot.stance)
-    travel = _swing_window(swing) * (on_clock((carried[:, 1] - foot.ankle[:, 2] - path.ahead) / stride) - course)
-    up = on_clock(foot.ankle[:, 1]) + clearance - on_clock(own[:, 0] + path.hip[:, 1])
-    sideways = on_clock(foot.ankle[:, 0] - path.hip[:, 0])
-    far = np.sqrt(np.maximum((BUILT_REACH * leg.length) ** 2 - up**2 - sideways**2, 0.0))
-    joint = on_clock(own[:, 1] + path.hip[:, 2])
-    places = [(joint + sign * far - rolled) / stride - course for sign in (-1.0, 1.0)]
-    travel = _smoothed(np.where(swing > 0.0, np.clip(travel, *places), 0.0)) * _swing_window(swing)
-    bounded = contact.smooth_step(swing / 0.1) * contact.smooth_step((1.0 - swing) / WITHIN_REACH)
-    travel = travel + bounded * (np.clip(travel, *places) - travel)
-    channels = {
-        "pitch": on_clock(contact.wanted_pitch(foot.pitch)),
-        "clearance": clearance,
-        "travel": travel,
-        "side": on_clock(foot.side),
-        "yaw": on_clock(foot.yaw),
-        "knee_yaw": on_clock(foot.knee_yaw),
-    }
-    return np.column_stack([channels[name] for name in FOOT_CHANNELS])
-
-
-def _pitched(sole: Sole, drawn: Floats, yaw: Floats, knee_yaw: Floats, side: Floats, stance: float) -> FootPath:
-    """The foot that rolls with a drawn pitch (N,) rad."""
-    swing = contact.swing_progress(contact.clock(PHASES, stance))
-    forward, up = contact.planted(sole, drawn, contact.toe_bend(drawn, swing))
-    ankle = np.column_stack([side + np.sin(yaw) * forward, up, np.cos(yaw) * forward])
-    return FootPath(stance, drawn, yaw, knee_yaw, side, ankle)
 
 
 def _leg_vector(leg: Leg, thigh: Floats, shank: Floats, sideways: Floats) -> Floats:
@@ -258,7 +190,7 @@ def _height(leg: Leg, paths: Sequence[LegPath], harmonics: Floats, advance: Floa
         foot = path.foot
         behind = path.ahead - stride * PHASES - _terms(path.phases, harmonics)[:, 1:] @ advance
         room = (
-            (BUILT_REACH * leg.length) ** 2
+            ((CALM_REACH if foot.calm else BUILT_REACH) * leg.length) ** 2
             - (foot.ankle[:, 0] - path.hip[:, 0]) ** 2
             - (behind + foot.ankle[:, 2] - path.hip[:, 2]) ** 2
         )
@@ -298,15 +230,19 @@ def _pushed_off(sole: Sole, path: LegPath, hips: Floats, stride: float) -> FootP
     length = np.linalg.norm(path.vector, axis=1)
     hip_up = (hips[:, 0] + path.hip[:, 1])[:, None]
     behind = (path.ahead - stride * PHASES - hips[:, 1] - path.hip[:, 2])[:, None]
-    changes = np.linspace(-PUSH_OFF, PUSH_OFF, 41)
+    changes = np.linspace(-1.0, 1.0, 41) * (CALM_PUSH_OFF if foot.calm else PUSH_OFF)
     pitches = foot.pitch[:, None] + changes
     forward, up = contact.planted(sole, pitches, contact.toe_bend(pitches, 0.0))
     reached = np.sqrt((up - hip_up) ** 2 + (behind + np.cos(foot.yaw)[:, None] * forward) ** 2)
-    best = changes[np.argmin((reached - length[:, None]) ** 2 + (0.02 * changes) ** 2, axis=1)]
+    misses = (reached - length[:, None]) ** 2 + (0.02 * changes) ** 2
+    if foot.calm:  # a foot that pushes off lifts its heel, never its toes, though that would fit as well
+        misses = np.where(pitches > np.maximum(foot.pitch, 0.0)[:, None] + 1e-9, np.inf, misses)
+    best = changes[np.argmin(misses, axis=1)]
     late = contact.smooth_step((PHASES - 0.36) / 0.1) * contact.smooth_step((foot.stance + 0.1 - PHASES) / 0.1)
     end = int(np.searchsorted(PHASES, foot.stance - 0.01))
     held = np.where(PHASES[end] > PHASES, best, best[end])
-    return _pitched(sole, foot.pitch + late * _smoothed(held), foot.yaw, foot.knee_yaw, foot.side, foot.stance)
+    pitch = foot.pitch + late * smoothed(held)
+    return pitched(sole, pitch, foot.yaw, foot.knee_yaw, foot.side, foot.stance, foot.calm)
 
 
 def _terms(phases: Floats, harmonics: Floats) -> Floats:
@@ -328,28 +264,3 @@ def _least_squares(design: Floats, wanted: Floats, weights: Floats, hold: Floats
     """(K,) weighted least squares with a ridge `hold` (K,), by the normal equations: few columns, many rows."""
     weighted = design * weights[:, None]
     return np.asarray(np.linalg.solve(weighted.T @ design + np.diag(hold + 1e-9), weighted.T @ wanted))
-
-
-def _still_in_stance(values: Floats, stance: float) -> Floats:
-    """A curve (N,) made constant in stance (its mean over the flat foot) and itself in mid swing."""
-    still = float(np.mean(values[(PHASES > 0.1) & (PHASES < 0.4)]))
-    return still + (values - still) * _swing_window(contact.swing_progress(contact.clock(PHASES, stance)))
-
-
-def _swing_window(progress: Floats) -> Floats:
-    """0 in stance, 1 in mid swing, without a jump in velocity or acceleration."""
-    return np.asarray(
-        contact.smooth_step((progress - 0.01) / 0.1) * contact.smooth_step((contact.ARRIVAL - progress) / CLOSING)
-    )
-
-
-def _smoothed(values: Floats) -> Floats:
-    """A periodic curve (N,) averaged over some 2 per cent of the cycle, which takes corners off."""
-    kernel = np.hanning(2 * SMOOTHING + 1)
-    padded = np.concatenate([values[-SMOOTHING:], values, values[:SMOOTHING]])
-    return np.convolve(padded, kernel / kernel.sum(), mode="valid")
-
-
-def _soft_positive(values: Floats, width: float = 0.002) -> Floats:
-    """values where well above 0, 0 well below, smooth between (m)."""
-    return np.asarray(width * np.logaddexp(0.0, values / width))

@@ -16,9 +16,11 @@ import numpy as np
 
 from stimuli.blend import UPPER, WalkCycle
 from stimuli.contact import Sole
+from stimuli.foot_channels import foot_channels
+from stimuli.foot_paths import PHASES
 from stimuli.gait_model import MODEL_ARM, WalkCurves, curves
 from stimuli.kinematics import rotation_matrices
-from stimuli.leg_paths import PHASES, LegPath, carried_hips, foot_channels, leg_path
+from stimuli.leg_paths import LegPath, carried_hips, leg_path
 from stimuli.legs import Leg
 from stimuli.rotations import from_exponential, inverse, multiply, shortest_arc
 from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
@@ -64,16 +66,16 @@ def scaled(skeleton: Skeleton, factor: float) -> Skeleton:
     return Skeleton(np.asarray(skeleton.offsets, dtype=float) * factor)
 
 
-def walk_cycle(figure: Figure, walk: WalkCurves, speed: float, step_frequency: float) -> WalkCycle:
+def walk_cycle(figure: Figure, walk: WalkCurves, speed: float, step_frequency: float, calm: bool = False) -> WalkCycle:
     """One cycle of a walk at exactly this speed (m/s) and step frequency (steps/min).
 
     Both legs are made like a right leg, the left one as seen in a mirror; where it is the right one's image half a
-    cycle later, once.
+    cycle later, once. calm: takes out the twitches of legs that come from captures (stimuli/swing.py).
     """
     stride = 120.0 * speed / step_frequency
     leg = figure.legs[1]
     sides = (1,) if walk.is_symmetric else (0, 1)
-    hips, paths = carried_hips(leg, figure.sole, [_leg(figure, walk, side) for side in sides], stride)
+    hips, paths = carried_hips(leg, figure.sole, [_leg(figure, walk, side, calm) for side in sides], stride)
     feet = [foot_channels(leg, path, hips, stride) for path in paths]
     shift = figure.leg_length * curves(walk.sides[1], PHASES)["hips_shift"]
     return WalkCycle(
@@ -88,11 +90,11 @@ def walk_cycle(figure: Figure, walk: WalkCurves, speed: float, step_frequency: f
     )
 
 
-def _leg(figure: Figure, walk: WalkCurves, side: int) -> LegPath:
+def _leg(figure: Figure, walk: WalkCurves, side: int, calm: bool) -> LegPath:
     """The left (0) or right (1) leg of a walk before anything is fitted."""
     signals = curves(walk.sides[side], PHASES)
     hips = rotation_matrices(_turned(signals, "hips"))
-    path = leg_path(figure.legs[1], figure.sole, figure.leg_length, signals, hips, float(walk.stance[side]))
+    path = leg_path(figure.legs[1], figure.sole, figure.leg_length, signals, hips, float(walk.stance[side]), calm)
     return replace(path, strike=walk.left_strike if side == 0 else 0.0)
 
 

@@ -34,6 +34,9 @@ STANCE = (0.52, 0.74)
 NEAR_SPEED, NEAR_FREQUENCY = 0.20, 8.0
 """m/s and steps/min within which a modelled walk is like a captured one."""
 
+REPEATED = 0.1
+"""Variance between two walks at one speed and step frequency over that between all walks of one person."""
+
 SAME_ROW = 3.0
 """steps/min: walks to one beat of the metronome lie this near to their mean."""
 
@@ -206,11 +209,7 @@ class _Manner:
 
     def cycle(self, speed: float, step_frequency: float, leg_length: float) -> ArrangedCycle:
         """The modelled cycle of this person at a speed (m/s) and step frequency (steps/min)."""
-        distance = (self.places - (speed, step_frequency)) / (NEAR_SPEED, NEAR_FREQUENCY)
-        near = np.exp(-0.5 * np.sum(distance**2, axis=1))
-        near = near / max(1.0, float(near.sum()))
-        count = PERSON_RATIO * len(near)
-        weights = near + (1.0 - near.sum()) * count / (1.0 + count) / len(near)
+        weights = self._weights(speed, step_frequency)
         none = np.zeros(self.residuals.shape[2:])
         average, stance = walk_coefficients(load_gait_model(), self.person, none, leg_length, speed, step_frequency)
         walk = WalkCurves(
@@ -219,3 +218,17 @@ class _Manner:
             0.5 + float(weights @ self.strikes),
         )
         return ArrangedCycle(speed, step_frequency, walk)
+
+    def _weights(self, speed: float, step_frequency: float) -> Floats:
+        """(n,) how much of each captured walk's difference there is at a speed and step frequency.
+
+        Kriging (Rasmussen & Williams 2006, eq. 2.19, 2.25): differences vary between people PERSON_RATIO times as much
+        as between walks of one person, whose likeness falls with their distance. So a captured walk's own difference
+        is met where it was captured, without a step to the modelled walks beside it; far from all captures what is
+        left is their mean, shrunk as in a mixed model.
+        """
+        places = np.vstack([self.places, (speed, step_frequency)]) / (NEAR_SPEED, NEAR_FREQUENCY)
+        apart = np.sum((places[:, None] - places) ** 2, axis=-1)
+        alike = PERSON_RATIO + np.exp(-0.5 * apart)
+        between = alike[:-1, :-1] + REPEATED * np.eye(len(self.places))
+        return np.asarray(np.linalg.solve(between, alike[:-1, -1]))

@@ -16,7 +16,7 @@ from stimuli.gait_model import SIGNALS
 from stimuli.importing.arrangement import ArrangedCycle, arrange
 from stimuli.importing.description import Description, read_description
 from stimuli.importing.errors import ImportingError
-from stimuli.importing.walks import CapturedWalk, check_height, read_walks
+from stimuli.importing.walks import CapturedWalk, check_height, height_note, read_walks
 from stimuli.measure import delivered_gait
 from stimuli.retarget import Figure, scaled
 
@@ -76,7 +76,7 @@ def _actor(name: str, description: Description, walks: list[CapturedWalk], compl
         source=description.source,
         rows=tuple((frequency, tuple(_stored(cycle, walks) for cycle in row)) for frequency, row in arrangement.rows),
         follows=arrangement.follows,
-        notes=_notes(walks),
+        notes=(*height_note(walks, description.height), *_notes(walks)),
     )
 
 

@@ -36,6 +36,9 @@ LEG_TOLERANCE = 0.14
 """Share by which a leg may differ from LEG_SHARE of the stature: five standard deviations of people's proportions
 (sitting height over stature, Pheasant 1996: 0.52 with SD 0.014), and regression joint centres."""
 
+LEG_UNLIKELY = 0.07
+"""The same at which it is unlikely: two and a half standard deviations."""
+
 SAME_PERSON = {"markers": 0.05, "skeleton": 0.012}
 """Share by which thigh and shank may differ between clips: one skeleton is exported alike, markers are placed anew."""
 
@@ -126,6 +129,18 @@ def check_height(walks: list[CapturedWalk], height: float, folder: Path) -> None
             f"{folder}: thigh and shank are {leg:.2f} m long, which is no leg of somebody {height:g} m tall "
             f"(about {LEG_SHARE * height:.2f} m); check height in actor.yaml and the unit of {walks[0].file}"
         )
+
+
+def height_note(walks: list[CapturedWalk], height: float) -> tuple[str, ...]:
+    """A sentence if the captured legs are unlikely for a person of this height (m), or none."""
+    leg = float(np.median([walk.leg_length for walk in walks]))
+    likely = leg / LEG_SHARE
+    if abs(likely / height - 1.0) <= LEG_UNLIKELY:
+        return ()
+    return (
+        f"thigh and shank of {leg:.2f} m are rather those of somebody {likely:.2f} m tall than {height:g} m; if height "
+        "in actor.yaml is wrong, steps are drawn too long or too short for the legs",
+    )
 
 
 def _check_clip(clip: Clip, path: Path) -> None:

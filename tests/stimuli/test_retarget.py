@@ -5,8 +5,8 @@ import pytest
 
 from stimuli.bodies import load_body
 from stimuli.contact import STANCE_END
+from stimuli.foot_paths import PHASES
 from stimuli.gait_model import Step, WalkCurves, curves, load_gait_model
-from stimuli.leg_paths import PHASES
 from stimuli.retarget import Figure, scaled, walk_cycle
 
 
