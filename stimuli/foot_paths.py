@@ -13,6 +13,7 @@ from stimuli.skeleton import Floats
 SAMPLES = 256
 PHASES = np.arange(SAMPLES) / SAMPLES
 SMOOTHING = 6  # samples each way
+LINGERING = 3  # samples each way; less, and the ankle turns sharply there; more, and the foot stops turning
 
 CLOSING = 0.15
 """Share of swing in which a captured foot comes on to its footprint."""
@@ -48,7 +49,7 @@ def pitched(
     swing = contact.swing_progress(contact.clock(PHASES, stance))
     if calm:
         wanted = contact.wanted_pitch(drawn)
-        drawn = contact.flattened(wanted + swing_window(swing) * (smoothed(wanted) - wanted))
+        drawn = contact.flattened(wanted + swing_window(swing) * (smoothed(wanted, LINGERING) - wanted))
     forward, up = contact.planted(sole, drawn, contact.toe_bend(drawn, swing))
     rolled = 1.0 - swing_window(swing) if calm else 1.0
     ankle = np.column_stack([side + rolled * np.sin(yaw) * forward, up, np.cos(yaw) * forward])
@@ -74,8 +75,8 @@ def swing_window(progress: Floats) -> Floats:
     )
 
 
-def smoothed(values: Floats) -> Floats:
-    """A periodic curve (N,) averaged over some 2 per cent of the cycle, which takes corners off."""
-    kernel = np.hanning(2 * SMOOTHING + 1)
-    padded = np.concatenate([values[-SMOOTHING:], values, values[:SMOOTHING]])
+def smoothed(values: Floats, reach: int = SMOOTHING) -> Floats:
+    """A periodic curve (N,) averaged over some 2 per cent of the cycle, which takes corners off; reach: samples."""
+    kernel = np.hanning(2 * reach + 1)
+    padded = np.concatenate([values[-reach:], values, values[:reach]])
     return np.convolve(padded, kernel / kernel.sum(), mode="valid")

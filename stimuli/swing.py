@@ -7,8 +7,6 @@ ankle's place: what is drawn never asks more than the leg has. Knows one leg in 
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -58,6 +56,8 @@ def calm_swing(leg: Leg, hip: Floats, aside: Floats, ankle: Floats, lowest: Floa
         calm = np.maximum(_smoothed(bend, weights), STRAIGHTEST)
         out = np.sqrt(np.maximum(reach(leg, calm) ** 2 - aside**2, 1e-6))
         below = ~held & (-np.cos(direction) * out < least)
+        if not below.any():
+            break
         bend = np.where(below, np.maximum(bend, above), bend)
         weights = np.where(below, 4.0 * weights, weights)
     found = np.array(ankle)
@@ -80,12 +80,15 @@ def _bend(leg: Leg, distance: Floats) -> Floats:
 
 
 def _smoothed(values: Floats, weights: Floats) -> Floats:
-    """(K,) the curve nearest to the values, by weighted squares, without sharp turns (Whittaker 1923)."""
-    return np.asarray(np.linalg.solve(np.diag(weights) + _stiffness(len(values)), weights * values))
+    """(K,) the curve nearest to the values, by weighted squares, without sharp turns (Whittaker 1923).
 
+    Its second differences count so much that a wave of CUTOFF per cycle of 256 samples is halved.
+    """
+    from scipy.linalg import solveh_banded  # here, because showing made cycles needs none of it
 
-@cache
-def _stiffness(count: int) -> Floats:
-    """(K, K) squares of second differences, scaled so that the harmonic CUTOFF of a cycle of 256 samples is halved."""
-    bends = np.diff(np.eye(count), 2, axis=0)
-    return np.asarray(bends.T @ bends) / (2.0 * np.sin(np.pi * CUTOFF / 256.0)) ** 4
+    stiffness = (2.0 * np.sin(np.pi * CUTOFF / 256.0)) ** -4
+    bands = np.full((3, len(values)), [[1.0], [-4.0], [6.0]])  # of D'D, D the second differences, upper form
+    bands[2, [0, -1]], bands[2, [1, -2]], bands[1, [1, -1]] = 1.0, 5.0, -2.0
+    bands *= stiffness
+    bands[2] += weights
+    return np.asarray(solveh_banded(bands, weights * values, check_finite=False))

@@ -407,3 +407,12 @@ def test_a_captured_cycle_slides_until_its_feet_are_placed(path):
     assert gait.slide_peak <= 10.0
     assert gait.sole_lowest >= -3.0
     assert gait.knee_least > 0.0
+
+
+@needs_captures
+def test_an_unlikely_height_is_noted_and_a_likely_one_is_not(tmp_path):
+    """CMU 07's legs are 0.805 m: those of 1.64 m (Winter 2009: 0.491 of the stature). 1.52 m is 8 % less."""
+    likely = import_folder(captured(tmp_path / "a", "07_10"), "likely", tmp_path / "library")
+    assert not any("tall" in note for note in likely.notes)
+    unlikely = import_folder(captured(tmp_path / "b", "07_10", height=1.52), "unlikely", tmp_path / "library")
+    assert any("rather those of somebody 1.64 m tall than 1.52 m" in note for note in unlikely.notes)

