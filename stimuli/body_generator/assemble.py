@@ -19,6 +19,7 @@ from stimuli.body_generator.locks import comb
 from stimuli.body_generator.parts import Part, parts_of
 from stimuli.body_generator.polygons import (
     Mesh,
+    edged,
     mirror_image,
     normals_of,
     polished,
@@ -26,6 +27,7 @@ from stimuli.body_generator.polygons import (
     settled,
     simplified,
 )
+from stimuli.body_generator.seams import sewn
 from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
 
 ROUGHNESS = {
@@ -45,8 +47,10 @@ ROUGHNESS = {
 }
 ORDER = tuple(ROUGHNESS)
 LEVELS = 3
+RIM = 0.45  # cm inside cloth up to which the cloth's own normals count
+EDGE_REACH = (1.0, 1.5, 0.0)  # cm from its end within which cloth is brought to a sharp edge; not in crowds
 UNION_SPACING = 1.15  # cm
-HAIR_BUDGETS = (800, 300, 150)  # triangles of the cap
+HAIR_BUDGETS = (900, 300, 150)  # triangles of the cap
 LOCK_SEGMENTS = (4, 2, 0)
 LOCK_SHARE = (1.0, 0.55, 0.0)
 
@@ -101,17 +105,40 @@ def solid_pieces(part: Part, everything: Field, coarseness: float = 1.0) -> list
         field = part.field if level == 0 else part.plain
         if finest is None or (level == 1 and part.plain is not part.field):
             finest = polished(polygonise(field, part.lower, part.upper, spacing), field, spacing)
+            if level == 0:
+                finest = _edged(part, finest, 0.3)
         if budget == 0:
             found.append([])
             continue
         mesh = simplified(finest, round(budget / coarseness))
         mesh = Mesh(settled(field, mesh.positions, 0.35 * part.spacing), mesh.triangles)
+        mesh = _edged(part, mesh, EDGE_REACH[level])
         edge = np.sqrt(_area(mesh) / max(len(mesh.triangles), 1))
-        normals = normals_of(field, mesh.positions, float(np.clip(0.22 * edge, 0.12, 0.5)))
-        shade = occlusion(everything, field, mesh.positions, normals) * part.paint(mesh.positions)
+        normals = _normals(part, field, mesh.positions, float(np.clip(0.22 * edge, 0.12, 0.5)))
+        shade = 1 - (1 - part.soft) * (1 - occlusion(everything, field, mesh.positions, normals))
+        shade = shade * part.paint(mesh.positions)
         piece = Piece(part.material, mesh, normals, shade)
-        found.append([piece, _mirror(piece)] if part.twin else [piece])
+        pieces = [piece]
+        if part.seams and level == 0:
+            pieces.append(Piece(part.material, *sewn(mesh, normals, shade, part.seams)))
+        found.append([*pieces, *map(_mirror, pieces)] if part.twin else pieces)
     return found
+
+
+def _edged(part: Part, mesh: Mesh, reach: float) -> Mesh:
+    if part.outside is None or part.ends is None or reach == 0:
+        return mesh
+    return edged(mesh, part.outside, part.ends, 0.75 * RIM, reach)
+
+
+def _normals(part: Part, field: Field, positions: Floats, step: float) -> Floats:
+    """(V, 3) of the part; on the outside of cloth those of the cloth, so that hems stay crisp in coarse triangles."""
+    normals = normals_of(field, positions, step)
+    if part.outside is None:
+        return normals
+    share = np.clip((part.outside(positions) + RIM) / (0.6 * RIM), 0, 1)[:, None]
+    mixed = share * normals_of(part.outside, positions, step) + (1 - share) * normals
+    return mixed / np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), 1e-9)
 
 
 def face_pieces(face: Field, figure: Figure, fineness: float) -> list[Piece]:

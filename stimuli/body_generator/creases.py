@@ -16,16 +16,16 @@ from stimuli.skeleton import Floats
 SEED = 20
 Curve = tuple[Floats, Floats, Floats]
 
-_WAIST_ROWS = (9.0, 4.5, -0.5, -5.0)  # cm above the spine joint
+_WAIST_ROWS = (8.5, 2.6, -4.2)  # cm above the spine joint
 _HEM_FLUTES = ((17.5, 4.0), (14.0, 9.5), (8.0, 11.5), (16.5, -6.0), (11.5, -11.5), (5.0, -12.5))  # x, z in cm
 _SLEEVE_FOLDS = ((0.45, 0.6), (0.7, 2.4), (0.8, -0.9), (0.6, 3.9), (0.85, 1.3), (0.9, 3.2))  # share of length, turn
-_BREAKS = ((0.8, 0.4), (3.9, 1.9), (7.4, 0.9), (11.5, 2.4), (16.0, 1.2))  # cm above the leg's end, turn
+_BREAKS = ((1.6, 0.5), (5.6, 2.1), (10.8, 1.0))  # cm above the leg's end, turn
 
 
 def shirt_folds(figure: Figure, cloth: Field) -> Field:
     """Folds of a T-shirt: from the arm-pits, over the waist, flutes above the hem, on the sleeves."""
     rng = np.random.default_rng(SEED)
-    strength = 1.05 if figure.female else 1.3
+    strength = 1.25 if figure.female else 1.5
     folds: list[Fold] = []
     for side in (1, -1):
         for curve, width, height in [
@@ -92,7 +92,7 @@ def _waist(figure: Figure, side: int, rng: np.random.Generator) -> list[tuple[Cu
         edge = side * wide * 0.98
         front = (_point(edge, y + 1.5, k - 2), _point(0.8 * side * wide, y - 1, 8), _point(reach, y - 2.5, 11))
         back = (_point(edge, y + 1.5, -3 - k), _point(0.75 * side * wide, y, -9), _point(reach, y - 1.5, -11))
-        found += [(front, 1.25, 0.5), (back, 1.3, 0.6)]
+        found += [(front, 1.35, 0.45), (back, 1.4, 0.6)]
     return found
 
 
@@ -190,21 +190,21 @@ def _knee(figure: Figure, side: int) -> list[tuple[Curve, float, float]]:
     radius = 6.2 if figure.female else 7.2
     behind = np.pi / 2
     found: list[tuple[Curve, float, float]] = []
-    for k, up in enumerate((7.5, 3.5, -0.5, -4.5)):
+    for k, up in enumerate((5.5, 0.5, -5.0)):
         y, lean = figure.knee[1] + up, 1.5 if k % 2 else -1.5
         on = lambda rise, turn, y=y: _on_leg(figure, side, y + rise, turn, radius)  # noqa: E731
-        found.append(((on(lean, -0.5), on(-1.0, -behind), on(-lean, 0.5 - np.pi)), 1.1, 0.65))
-        found.append(((on(2 + lean, 0.1), on(1, 0.6), on(2, 1.15)), 1.1, 0.42))
-        found.append(((on(2 - lean, np.pi - 0.1), on(1, np.pi - 0.6), on(2, np.pi - 1.1)), 1.1, 0.42))
+        found.append(((on(lean, -0.5), on(-1.0, -behind), on(-lean, 0.5 - np.pi)), 1.15, 0.5))
+        found.append(((on(2 + lean, 0.1), on(0, 0.7), on(-1, 1.25)), 1.3, 0.24))
+        found.append(((on(2 - lean, np.pi - 0.1), on(0, np.pi - 0.7), on(-1, np.pi - 1.2)), 1.3, 0.24))
     return found
 
 
 def _break(figure: Figure, side: int, rng: np.random.Generator) -> list[tuple[Curve, float, float]]:
     radius = 5.85 if figure.female else 6.6
-    low = figure.ankle[1] + (1.0 if figure.female else -1.0)
+    low = figure.ankle[1] - 1.0
     found: list[tuple[Curve, float, float]] = []
     for k, (up, turn) in enumerate(_BREAKS):
-        turn, height = turn + 0.3 * rng.normal(), 0.75 - 0.11 * k
+        turn, height = turn + 0.3 * rng.normal(), 0.62 - 0.17 * k
         on = lambda rise, at, more=0.0, y=low + up: _on_leg(figure, side, y + rise, at, radius + more)  # noqa: E731
         found.append(((on(1.0, turn - 1.3), on(-0.8, turn, 0.6), on(1.4, turn + 1.3)), 1.05, height))
         found.append(((on(2.4, turn + 2.0), on(1.2, turn + 3.1), on(2.2, turn + 4.2)), 1.1, 0.85 * height))

@@ -17,7 +17,7 @@ from stimuli.skeleton import Floats
 
 EYE = (3.2, 163.2)  # centre of the left iris
 _EYE_FROM, _EYE_TO = 1.72, 4.72
-_IRIS, _PUPIL = 0.60, 0.24
+_IRIS, _PUPIL = 0.62, 0.24
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ def face_patches(head: Field, frame: HeadFrame, female: bool, fineness: float = 
     x = _EYE_FROM + t * (_EYE_TO - _EYE_FROM)
     rows = count(7)
     v = np.linspace(0, 1, rows)
-    white = np.clip(0.95 - 0.55 * v[None, :] ** 4 - 0.35 * np.abs(2 * t[:, None] - 1) ** 4, 0.2, 1)
+    white = np.clip(0.95 - 0.70 * v[None, :] ** 3 - 0.35 * np.abs(2 * t[:, None] - 1) ** 4, 0.2, 1)
     strip("eye", x, lower(t), upper(t), rows, 0.03, white)
 
     for material, radius, lift in (("iris", _IRIS, 0.05), ("pupil", _PUPIL, 0.065)):
@@ -82,10 +82,15 @@ def face_patches(head: Field, frame: HeadFrame, female: bool, fineness: float = 
     strip("lash", lash_x, lid - 0.035, lid + swell, 3, 0.10, np.ones((len(lash_t), 3)))
     strip("lash", x, lower(t) - 0.035 * np.sin(np.pi * t), lower(t) + 0.012, 2, 0.07, np.ones((len(t), 2)))
 
+    if fineness > 0.3:  # the crease above the lid
+        over = upper(t) + 0.17 + 0.10 * np.sin(np.pi * t)
+        crease = 1 - 0.42 * np.sin(np.pi * np.clip(0.1 + 0.85 * t, 0, 1))[:, None] * np.array([0.0, 1.0, 0.0])
+        strip("skin", x, over - 0.09, over + 0.14, 3, 0.12, crease)
+
     s = np.linspace(0, 1, count(22))
     brow_x = 1.35 + s * 3.95
-    arch = 165.05 + (0.62 if female else 0.40) * np.sin(np.pi * np.clip(s * 0.80, 0, 1)) ** 1.2 - 0.35 * s**3
-    fat = (0.40 if female else 0.58) * np.clip(s / 0.08, 0.35, 1) * (1 - 0.80 * s**1.8)
+    arch = 165.30 + (0.50 if female else 0.25) * np.sin(np.pi * np.clip(s * 0.80, 0, 1)) ** 1.2 - 0.35 * s**3
+    fat = (0.34 if female else 0.48) * np.clip(0.45 + s / 0.25, 0, 1) * (1 - 0.80 * s**1.8)
     rough = 0.05 * rng.random((2, len(s)))
     strip(
         "brow",
@@ -103,7 +108,7 @@ def face_patches(head: Field, frame: HeadFrame, female: bool, fineness: float = 
 
 def _lids(female: bool) -> tuple[Outline, Outline]:
     """Heights of upper and lower lid along the eye, 0 at the nose."""
-    open_up, open_down = (0.56, 0.47) if female else (0.47, 0.44)
+    open_up, open_down = (0.47, 0.42) if female else (0.40, 0.39)
     tilt = 0.20 if female else 0.12
     base = lambda t: EYE[1] - 0.12 + tilt * (t - 0.3)  # noqa: E731
     upper = lambda t: base(t) + open_up * np.sin(np.pi * np.clip(t, 0, 1) ** 0.88) ** 0.72  # noqa: E731
@@ -116,7 +121,7 @@ def _lips(head: Field, frame: HeadFrame, female: bool, count: Callable[[float], 
     u = np.linspace(-1, 1, count(23))
     x = half * u
     fade = (1 - np.abs(u) ** 2.2) ** 0.8
-    middle = 156.93 + 0.05 * np.cos(2 * np.pi * u) + 0.12 * u**4
+    middle = 156.88 + 0.05 * np.cos(2 * np.pi * u) + (0.20 if female else 0.27) * u**2 + 0.16 * u**4
     bow = 0.66 if female else 0.48
     top = middle + bow * fade * (
         1 - 0.16 * np.exp(-((u / 0.13) ** 2)) + 0.10 * np.exp(-(((np.abs(u) - 0.24) / 0.16) ** 2))
@@ -150,6 +155,8 @@ def _pressed(
     corners = place[triangles]
     face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     triangles = np.where((face[:, 2] < 0)[:, None], triangles[:, ::-1], triangles)
-    keep = np.linalg.norm(face, axis=1) > 1e-7
+    triangles = triangles[np.linalg.norm(face, axis=1) > 1e-7]
+    if material == "skin":  # whose surfaces are closed: the patch has a back
+        triangles = np.concatenate([triangles, triangles[:, ::-1]])
     shade = np.broadcast_to(shade, (n, m)).reshape(-1)
-    return Patch(material, Mesh(place, triangles[keep]), normals, np.asarray(shade, dtype=np.float64))
+    return Patch(material, Mesh(place, triangles), normals, np.asarray(shade, dtype=np.float64))

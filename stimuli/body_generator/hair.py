@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from stimuli.body_generator.fields import Field, capsule, ellipsoid, generalised_cylinder, join, smooth_max
+from stimuli.body_generator.fields import Field, capsule, ellipsoid, generalised_cylinder, join, smooth_max, smooth_min
 from stimuli.body_generator.figure import Figure
 from stimuli.body_generator.head import head_frame, skull_field
 from stimuli.body_generator.polygons import normals_of
@@ -22,8 +22,10 @@ _ANGLES = np.radians([0, 14, 28, 40, 52, 62, 70, 80, 90, 98, 112, 128, 150, 180]
 _LINE = {  # height of the hairline at those angles
     "short": (170.9, 171.1, 171.3, 170.0, 167.5, 165.3, 163.2, 161.8, 161.8, 164.9, 162.5, 159.0, 156.3, 155.6),
     "cropped": (171.0, 171.2, 171.6, 170.4, 167.8, 165.4, 163.4, 162.4, 162.6, 165.1, 162.6, 159.2, 156.6, 155.9),
-    "ponytail": (170.2, 170.3, 170.2, 169.0, 166.6, 164.6, 163.2, 162.2, 162.6, 164.4, 161.8, 158.6, 155.8, 154.8),
+    "ponytail": (170.7, 170.6, 170.0, 168.3, 166.0, 164.1, 162.9, 162.0, 162.6, 164.4, 161.8, 158.6, 155.8, 154.8),
 }
+
+PARTING = 2.6  # cm to the left, of the bob
 
 
 @dataclass(frozen=True)
@@ -69,8 +71,9 @@ def _cap(skull: Field, name: str, thickness: Callable[[Floats], Floats]) -> Fiel
     above = _above_line(name)
 
     def cap(p: Floats) -> Floats:
-        grown = np.clip(above(p) / 2.2, -1, 1)
-        grown = np.where(grown > 0, np.maximum(grown, 0) ** 0.6, 3 * grown)
+        front = np.clip((p[:, 2] - 2.0) / 4.0, 0, 1)  # where it grows away from the face it begins thin
+        grown = np.clip(above(p) / (2.2 + 2.2 * front), -1, 1)
+        grown = np.where(grown > 0, np.maximum(grown, 0) ** (0.6 + 0.3 * front), 3 * grown)
         return skull(p) - thickness(p) * grown + 0.12
 
     return cap
@@ -84,7 +87,7 @@ def _short(skull: Field) -> Style:
         top = top * top * (3 - 2 * top)
         front = np.clip((p[:, 2] - 1) / 7, 0, 1)
         parting = np.exp(-(((p[:, 0] - 4.0) / 0.7) ** 2)) * (p[:, 2] > -3)
-        return 0.55 + top * (1.25 + 0.9 * front) * (1 - 0.45 * parting) * np.where(p[:, 0] > 4.2, 0.75, 1)
+        return 0.55 + top * (1.2 + 0.25 * front) * (1 - 0.45 * parting) * np.where(p[:, 0] > 4.2, 0.75, 1)
 
     cap = _cap(skull, "short", thickness)
 
@@ -98,10 +101,10 @@ def _short(skull: Field) -> Style:
 
     def shape(p: Floats) -> tuple[Floats, Floats, Floats]:
         top = np.clip((p[:, 1] - 168.0) / 3.0, 0, 1)
-        return 1.7 + 3.4 * top, 0.8 + 1.0 * top, 0.07 + 0.12 * top
+        return 1.7 + 3.4 * top, 0.8 + 1.0 * top, 0.07 + 0.06 * top
 
     above = _above_line("short")
-    return Style(cap, cap, flow, 260, shape, lambda p: 0.15 - above(p))
+    return Style(cap, cap, flow, 196, shape, lambda p: 0.15 - above(p))
 
 
 def _cropped(skull: Field) -> Style:
@@ -126,36 +129,44 @@ def _cropped(skull: Field) -> Style:
 
 
 def _bob(skull: Field) -> Style:
-    """Chin-length hair parted on the left, tucked slightly inwards at its ends."""
+    """Chin-length hair parted on the left, swept over the temples and tucked slightly inwards at its ends."""
     rows = (
-        (152.0, 0, 0, 6.7, 6.7, 7.4, 4.0, 2.2),
-        (154.5, 0, 0, 7.4, 7.4, 8.5, 5.0, 2.2),
-        (157.5, 0, 0, 8.4, 8.4, 9.8, 6.0, 2.2),
-        (161.5, 0, 0, 9.05, 9.05, 10.8, 7.5, 2.2),
-        (165.5, 0, 0, 8.6, 8.6, 10.9, 8.5, 2.2),
-        (168.0, 0, 0, 8.0, 8.0, 10.6, 8.5, 2.2),
+        (151.5, 0, 0, 6.7, 6.7, 7.4, 2.6, 2.2),
+        (154.5, 0, 0, 7.5, 7.5, 8.5, 3.4, 2.2),
+        (157.5, 0, 0, 8.5, 8.5, 9.8, 4.2, 2.2),
+        (161.5, 0, 0, 9.25, 9.25, 10.8, 5.4, 2.2),
+        (165.5, 0, 0, 8.8, 8.8, 10.9, 6.8, 2.2),
+        (168.5, 0, 0, 8.0, 8.0, 10.4, 6.6, 2.2),
     )
     curtain = generalised_cylinder((0, 0, 0), (0, 1, 0), (1, 0, 0), rows, rounding=1.5)
 
-    def crown(p: Floats) -> Floats:
-        parting = np.exp(-(((p[:, 0] - 2.6) / 0.55) ** 2)) * (p[:, 2] > -4) * (p[:, 1] > 168)
-        return skull(p) - 0.9 + 0.55 * parting
+    def above(p: Floats) -> Floats:
+        """Height above the edge of the hair swept from the parting over the forehead to both temples."""
+        right, left = np.clip((PARTING - p[:, 0]) / 9.2, 0, 1.2), np.clip((p[:, 0] - PARTING) / 4.6, 0, 1.2)
+        return p[:, 1] - (170.7 - 6.0 * right**1.4 - 6.8 * left**1.6)
 
-    volume = join(crown, (curtain, 2.0))
+    def crown(p: Floats) -> Floats:
+        parting = np.exp(-(((p[:, 0] - PARTING) / 0.55) ** 2)) * (p[:, 2] > -4) * (p[:, 1] > 168)
+        front = np.clip((p[:, 2] - 1.0) / 3.0, 0, 1)
+        grown = np.clip(above(p) / 3.2, -1, 1)
+        grown = np.where(grown > 0, np.maximum(grown, 0) ** 0.7, 3 * grown)
+        return skull(p) - (1.0 - 0.5 * parting) * (1 - front + front * grown) + 0.1
+
     opening = join(
-        ellipsoid((0.0, 158.2, 11.0), (6.9, 11.2, 9.2)),
-        (ellipsoid((1.6, 166.0, 11.2), (5.0, 4.6, 5.0)), 2.0),
-        (capsule((0, 151, 8.5), (0, 147, 8.5), 7.0, 7.0), 2.0),
+        ellipsoid((0.0, 158.6, 11.0), (7.9, 11.6, 9.6)),
+        (capsule((0, 151, 8.5), (0, 147, 8.5), 7.4, 7.4), 2.0),
     )
+    volume = join(crown, (curtain, 1.4))
 
     def cap(p: Floats) -> Floats:
-        inside = smooth_max(volume(p), -opening(p), 1.5)
-        bottom = 152.5 + 0.9 * np.clip(p[:, 2] / 6, -1, 1) * -1
-        return smooth_max(inside, bottom - p[:, 1], 0.8)
+        hanging = smooth_max(curtain(p), -opening(p), 0.7)
+        bottom = 151.6 - 0.9 * np.clip(p[:, 2] / 6, -1, 1)
+        above_chin = smooth_max(crown(p), 160.0 - p[:, 1], 1.0)
+        return smooth_max(smooth_min(above_chin, hanging, 1.4), bottom - p[:, 1], 0.5)
 
     def flow(p: Floats, n: Floats) -> Floats:
         up = np.clip(n[:, 1:2], 0, 1)
-        away = np.where(p[:, :1] > 2.6, 1.0, -1.0) * np.array([1.0, 0, 0]) + np.array([0, 0, -0.3])
+        away = np.where(p[:, :1] > PARTING, 1.0, -1.0) * np.array([1.0, 0, 0]) + np.array([0, 0, -0.3])
         low = np.clip((156.5 - p[:, 1:2]) / 3, 0, 1)
         near_face = np.clip(1 - opening(p) / 1.6, 0, 1.6)[:, None]
         from_face = normals_of(opening, p, 0.3)
@@ -163,9 +174,13 @@ def _bob(skull: Field) -> Style:
 
     def shape(p: Floats) -> tuple[Floats, Floats, Floats]:
         one = np.ones(len(p))
-        return 6.5 * one, 1.25 * one, 0.30 * one
+        return 6.5 * one, 1.2 * one, 0.26 - 0.16 * np.clip((p[:, 1] - 169) / 4, 0, 1)
 
-    return Style(cap, volume, flow, 250, shape, lambda p: np.maximum(-0.5 - opening(p), 152.3 - p[:, 1]))
+    def ends(p: Floats) -> Floats:
+        off_the_face = np.minimum(0.25 - above(p), -0.35 - opening(p))
+        return np.maximum(off_the_face, 153.6 - 0.9 * np.clip(p[:, 2] / 6, -1, 1) - p[:, 1])
+
+    return Style(cap, volume, flow, 205, shape, ends)
 
 
 def _ponytail(skull: Field) -> Style:
@@ -192,10 +207,10 @@ def _ponytail(skull: Field) -> Style:
 
     def shape(p: Floats) -> tuple[Floats, Floats, Floats]:
         behind = p[:, 2] < knot[2] - 0.5
-        return np.where(behind, 7.5, 6.0), np.where(behind, 1.3, 1.1), np.where(behind, 0.22, 0.12)
+        return np.where(behind, 7.5, 6.0), np.where(behind, 1.3, 1.1), np.where(behind, 0.22, 0.09)
 
     above = _above_line("ponytail")
-    return Style(cap, cap, flow, 240, shape, lambda p: np.where(p[:, 2] < -11, 146.9 - p[:, 1], 0.15 - above(p)))
+    return Style(cap, cap, flow, 200, shape, lambda p: np.where(p[:, 2] < -11, 146.9 - p[:, 1], 0.15 - above(p)))
 
 
 def cap_field(cut: Style, figure: Figure) -> Field:

@@ -49,7 +49,7 @@ _SECTIONS_MAN = (
     (174.95, 0, 0, 1.0, 1.0, 1.4, 1.1, 2.0),
 )
 _JAW_MAN = {153.8: 0.96, 155.5: 0.95, 157.2: 0.95, 159.2: 0.965, 161.2: 0.98}
-_JAW_WOMAN = {151.8: 0.76, 152.6: 0.76, 153.8: 0.80, 155.5: 0.84, 157.2: 0.88, 159.2: 0.925, 161.2: 0.965}
+_JAW_WOMAN = {151.8: 0.80, 152.6: 0.80, 153.8: 0.81, 155.5: 0.82, 157.2: 0.87, 159.2: 0.90, 161.2: 0.955}
 
 
 @dataclass(frozen=True)
@@ -142,18 +142,31 @@ def _sections(female: bool) -> Field:
 def _face(female: bool) -> Field:
     skull = _sections(female)
     strong = 0.0 if female else 1.0
-    jaw = mirrored(ellipsoid((4.3 + 0.25 * strong, 156.9, 2.0), (1.1 + 0.25 * strong, 2.2, 2.6)))
+    jaw = mirrored(ellipsoid((3.8 + 0.7 * strong, 156.9, 2.0), (0.9 + 0.4 * strong, 2.2, 2.6)))
     chin = ellipsoid((0, 153.75, 7.55), (1.75 + 0.5 * strong, 1.45, 1.35))
     muzzle = ellipsoid((0, 157.0, 7.0), (3.0, 2.3, 2.35))
     cheek = mirrored(ellipsoid((4.5, 161.0, 5.7), (1.9, 1.6, 1.7)))
     apple = mirrored(ellipsoid((3.6, 159.7, 6.9), (1.7, 1.6, 1.2)))
-    hollow_fill = mirrored(ellipsoid((3.8, 157.6, 4.9), (1.35 + 0.1 * strong, 2.8, 2.3)))
-    brow = mirrored(ellipsoid((2.9, 165.35, 8.05), (2.3 + 0.3 * strong, 0.62 + 0.18 * strong, 0.85 + 0.3 * strong)))
-    shape = join(
-        skull, (jaw, 2.2), (chin, 2.0), (muzzle, 1.6), (cheek, 2.4), (apple, 2.0), (hollow_fill, 2.6), (brow, 1.6)
+    hollow_fill = mirrored(ellipsoid((3.35 + 0.45 * strong, 157.4, 4.9), (1.35 + 0.1 * strong, 2.8, 2.3)))
+    jaw_line = mirrored(
+        capsule(
+            (3.5 + 0.7 * strong, 155.9, 3.2), (0.9 + 0.7 * strong, 153.7, 6.9), 0.8 + 0.1 * strong, 0.7 + 0.2 * strong
+        )
     )
-    shape = cut(shape, mirrored(ellipsoid((3.15, 163.35, 10.5), (1.85, 1.15, 2.15 + 0.15 * strong))), 1.5)
-    shape = cut(shape, mirrored(ellipsoid((7.6, 166.5, 6.0), (1.0, 2.5, 2.8))), 1.6)  # temples
+    brow = mirrored(ellipsoid((2.6, 165.45, 8.0), (1.9 + 0.3 * strong, 0.62 + 0.12 * strong, 0.62 + 0.3 * strong)))
+    shape = join(
+        skull,
+        (jaw, 2.2),
+        (chin, 2.0),
+        (muzzle, 1.6),
+        (cheek, 2.4),
+        (apple, 2.0),
+        (hollow_fill, 2.6),
+        (jaw_line, 2.6),
+        (brow, 1.6),
+    )
+    shape = cut(shape, mirrored(ellipsoid((3.15, 163.4, 10.5), (1.85, 1.2, 1.85 + 0.2 * strong))), 1.5)
+    shape = cut(shape, mirrored(ellipsoid((7.8, 166.5, 6.0), (1.0, 2.5, 2.8))), 1.6)  # temples
     lids = mirrored(ellipsoid((3.2, 163.2, 6.95), (1.55, 1.16, 1.45)))
     shape = join(shape, (lids, 0.55))
     wide = 1.0 if strong else 0.88
@@ -175,7 +188,7 @@ def _face(female: bool) -> Field:
 
 def _ear() -> Field:
     """Both ears: a tilted disc with a rim, a hollow and a lobe, standing off the head by 20 degrees."""
-    tilt, off = np.radians(10), np.radians(22)
+    tilt, off = np.radians(10), np.radians(17)
     back = np.array([np.sin(off), 0, -np.cos(off)])
     up = np.array([0, np.cos(tilt), -np.sin(tilt)])
     up = up - back * (up @ back)
@@ -183,8 +196,8 @@ def _ear() -> Field:
     out = np.cross(up, back)
     out = out if out[0] > 0 else -out
     axes = np.stack([out, up, back])
-    centre = np.array([7.85, 162.0, -0.9])
-    disc = ellipsoid(centre, (0.75, 3.1, 1.75), axes)
+    centre = np.array([7.7, 162.0, -0.9])
+    disc = ellipsoid(centre, (0.7, 2.95, 1.7), axes)
     lobe = ellipsoid(centre - 2.5 * up - 0.5 * back, (0.5, 0.85, 0.75), axes)
     hollow = ellipsoid(centre + 0.75 * out - 0.3 * up - 0.35 * back, (0.85, 1.6, 0.95), axes)
     groove = ellipsoid(centre + 0.8 * out + 1.35 * up + 0.15 * back, (0.6, 1.15, 0.95), axes)

@@ -19,11 +19,16 @@ from stimuli.skeleton import JOINTS, Floats
 
 HEAT = 1.6  # strength of the pull of the nearest bone; larger = narrower transitions at the joints
 NEIGHBOURS = 6
-ELBOW, KNEE = 2.0, 1.4  # sharpness: above 1 a hinge bends in a narrower band and keeps more of its volume
+SHOULDER, ELBOW, KNEE = 0.7, 2.0, 1.15
+# sharpness: above 1 a hinge bends in a narrower band and keeps more of its volume, below 1 it is rounder
 _HINGES = tuple(
     (JOINTS.index(side + upper), JOINTS.index(side + lower), sharpness)
     for side in ("left", "right")
-    for upper, lower, sharpness in (("UpperArm", "LowerArm", ELBOW), ("UpperLeg", "LowerLeg", KNEE))
+    for upper, lower, sharpness in (
+        ("Shoulder", "UpperArm", SHOULDER),
+        ("UpperArm", "LowerArm", ELBOW),
+        ("UpperLeg", "LowerLeg", KNEE),
+    )
 )
 MIRROR_JOINT = np.array(
     [JOINTS.index(n.replace("left", "right") if n.startswith("left") else n.replace("right", "left")) for n in JOINTS]

@@ -15,12 +15,13 @@ from stimuli.body_generator.fields import (
     smooth_max,
 )
 from stimuli.body_generator.figure import Figure
+from stimuli.body_generator.polygons import settled
 from stimuli.skeleton import Floats
 
 # place across the palm (towards the thumb), length, radius, bend at the knuckle in degrees; index to little finger
-_FINGERS = ((2.9, 7.3, 0.84, 16.0), (0.95, 8.0, 0.87, 20.0), (-1.0, 7.5, 0.83, 25.0), (-2.75, 5.9, 0.74, 31.0))
+_FINGERS = ((2.75, 7.3, 0.84, 22.0), (0.95, 8.0, 0.87, 27.0), (-0.9, 7.5, 0.83, 33.0), (-2.6, 5.9, 0.74, 40.0))
 _PHALANGES = (0.46, 0.30, 0.24)  # share of a finger's length
-_CURL = (0.0, 26.0, 14.0)  # degrees added at each finger joint
+_CURL = (0.0, 32.0, 20.0)  # degrees added at each finger joint
 
 
 def arm(figure: Figure) -> Field:
@@ -70,7 +71,7 @@ def hand(figure: Figure) -> Field:
         base = at(9.3 - 0.12 * abs(place - 0.9) ** 1.4, place, 0.1)
         angle, tip = np.radians(bend), base
         r = radius * k * slim
-        fan = 0.035 * place
+        fan = 0.015 * place
         for i, (share, curl) in enumerate(zip(_PHALANGES, _CURL, strict=True)):
             angle += np.radians(curl)
             direction = np.cos(angle) * along + np.sin(angle) * inwards + fan * thumb_side
@@ -82,6 +83,21 @@ def hand(figure: Figure) -> Field:
         radius = (1.25, 1.02, 0.9)[i] * k * slim
         parts.append((capsule(thumb[i], thumb[i + 1], radius, radius * 0.86), 1.3 if i == 0 else 0.4))
     return join(palm, *parts)
+
+
+def ankle(figure: Figure) -> Field:
+    """The left ankle and the start of the calf, from inside the shoe up into the trousers."""
+    x, y, z = figure.ankle
+    k = figure.foot_scale
+    rows = (
+        (-4.0, 0, 0, 3.2 * k, 3.2 * k, 4.0 * k, 3.8 * k, 2.0),
+        (1.0, 0, 0, 3.3 * k, 3.3 * k, 3.7 * k, 4.0 * k, 2.0),
+        (5.0, 0, 0, 3.3 * k, 3.3 * k, 3.5 * k, 4.1 * k, 2.0),
+        (10.5, 0, 0, 3.9 * k, 3.9 * k, 3.9 * k, 4.7 * k, 2.0),
+    )
+    limb = generalised_cylinder((x, y, z + 0.6), (0, 1, 0), (1, 0, 0), rows, rounding=0.6)
+    bone = ellipsoid((x, y + 0.8, z + 0.4), (3.9 * k, 1.5, 1.6))
+    return join(limb, (bone, 1.2))
 
 
 def _shoe_frame(figure: Figure) -> tuple[Floats, Floats, Floats]:
@@ -155,22 +171,49 @@ def sole(figure: Figure) -> Field:
 
 
 def laces(figure: Figure) -> Field:
-    """Five laces across the tongue and a small bow."""
+    """Five laces across the instep, on the shoe, and a small bow."""
     origin, forward, outwards = _shoe_frame(figure)
-    k = figure.foot_scale
+    upper, k = shoe(figure), figure.foot_scale
 
-    def at(s: float, o: float, y: float) -> Floats:
-        return origin + k * (s * forward + o * outwards + y * np.array([0, 1.0, 0]))
+    def on(s: float, o: float, lift: float = 0.1) -> Floats:
+        """A point of the shoe `s` before the ankle and `o` outwards, seen from above."""
+        point = (origin + k * (s * forward + o * outwards) + (0, 11.0 * k, 0))[None]
+        for _ in range(40):
+            point[:, 1] -= 0.7 * np.clip(upper(point), -0.5, 1.0)
+        found: Floats = point[0] + (0, lift, 0)
+        return found
 
     rods: list[tuple[Field, float]] = []
     for i in range(5):
-        s = 4.6 + 1.5 * i
-        y = 9.35 - 0.68 * i
-        wide = 1.7 + 0.12 * i
+        s, wide = 4.9 + 1.35 * i, 1.75 + 0.1 * i
         for side in (1, -1):
-            rods.append((capsule(at(s, 0, y), at(s + 0.6, side * wide, y - 1.15), 0.24 * k, 0.22 * k), 0.05))
+            rods.append((capsule(on(s, 0, 0.16), on(s - 0.15, side * wide, 0.02), 0.22 * k, 0.2 * k), 0.05))
+    knot = on(4.3, 0, 0.3)
     for side in (1, -1):
-        rods.append((capsule(at(4.5, 0, 9.6), at(4.0, side * 1.9, 9.35), 0.3 * k, 0.24 * k), 0.1))
-        rods.append((capsule(at(4.5, 0, 9.6), at(5.9, side * 1.6, 9.0), 0.22 * k, 0.2 * k), 0.1))
+        loop = on(4.6, side * 1.7, 0.3)
+        rods.append((capsule(knot, loop, 0.26 * k, 0.24 * k), 0.1))
+        rods.append((capsule(knot, on(6.0, side * 0.9, 0.25), 0.2 * k, 0.18 * k), 0.1))
     first, *rest = rods
     return join(first[0], *rest)
+
+
+def shoe_seams(figure: Figure) -> tuple[Floats, ...]:
+    """Lines (N, 3) on the left shoe: where quarters meet the vamp, and round the heel."""
+    origin, forward, outwards = _shoe_frame(figure)
+    upper, k = shoe(figure), figure.foot_scale
+
+    def line(*points: tuple[float, float, float]) -> Floats:
+        """Through points given by distance before the ankle, outwards and height."""
+        s, o, y = np.array(points).T
+        t = np.linspace(0, 1, 24)
+        s, o, y = (np.interp(t, np.linspace(0, 1, len(points)), each) for each in (s, o, y))
+        found = origin + k * (s[:, None] * forward + o[:, None] * outwards + y[:, None] * np.array([0.0, 1, 0]))
+        for _ in range(6):
+            found = settled(upper, found, 2.0)
+        return found
+
+    lines = [line((9.6, -3.6, 6.5), (11.4, 0, 7.0), (9.6, 3.6, 6.5))]
+    for side in (1, -1):
+        lines.append(line((9.6, side * 3.4, 6.3), (10.6, side * 4.6, 3.8), (8.6, side * 5.0, 2.0)))
+        lines.append(line((-2.6, side * 4.4, 7.6), (-2.2, side * 4.6, 4.6), (-4.2, side * 4.6, 2.0)))
+    return tuple(lines)

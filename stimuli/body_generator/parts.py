@@ -11,7 +11,8 @@ from stimuli.body_generator.fields import Field, grown, join, mirrored
 from stimuli.body_generator.figure import Figure
 from stimuli.body_generator.garments import clothes
 from stimuli.body_generator.head import beard_shadow, head
-from stimuli.body_generator.limbs import arm, laces, shoe, sole
+from stimuli.body_generator.limbs import ankle, arm, laces, shoe, shoe_seams, sole
+from stimuli.body_generator.seams import Line
 from stimuli.skeleton import Floats
 
 
@@ -22,6 +23,10 @@ class Part:
     lower, upper: (3,) cm, the box it lies in; spacing: cm of the grid it is cut from.
     budgets:      triangles at each level of detail; 0 leaves it out.
     twin:         it is the left one of two, the right one being its mirror image (budgets are for one).
+    ends:         0 where the cloth ends: its edge is brought there.
+    soft:         share of what is hidden from the sky that gets light all the same: skin passes it on.
+    seams:        lines sewn on the finest level.
+    outside:      cloth that runs on beyond its openings: normals near an edge are those of the cloth, not of its rim.
     """
 
     name: str
@@ -34,6 +39,10 @@ class Part:
     budgets: tuple[int, int, int]
     twin: bool
     paint: Callable[[Floats], Floats]  # shade (N,) put on points (N, 3), 1 = none
+    outside: Field | None = None
+    ends: Field | None = None
+    soft: float = 0.0
+    seams: tuple[Line, ...] = ()
 
 
 def _unpainted(points: Floats) -> Floats:
@@ -62,6 +71,10 @@ def parts_of(figure: Figure) -> tuple[tuple[Part, ...], Field]:
         twin: bool = False,
         plain: Field | None = None,
         paint: Callable[[Floats], Floats] = _unpainted,
+        outside: Field | None = None,
+        ends: Field | None = None,
+        soft: float = 0.0,
+        seams: tuple[Line, ...] = (),
     ) -> Part:
         return Part(
             name,
@@ -74,6 +87,10 @@ def parts_of(figure: Figure) -> tuple[tuple[Part, ...], Field]:
             budgets,
             twin,
             paint,
+            outside,
+            ends,
+            soft,
+            seams,
         )
 
     wide = sleeve_end[0] + 11
@@ -87,11 +104,12 @@ def parts_of(figure: Figure) -> tuple[tuple[Part, ...], Field]:
             (-12, neck_y - 12.5, -15),
             (12, figure.stature + 2, 15),
             0.38,
-            (4800, 1500, 330),
+            (4600, 1500, 330),
             plain=head(figure, grown(worn.chest, -0.7)),
             paint=beard_shadow(figure),
+            soft=0.3,
         ),
-        part("arm", "skin", left_arm, arm_low, arm_high, 0.32, (1600, 480, 140), True),
+        part("arm", "skin", left_arm, arm_low, arm_high, 0.32, (1450, 480, 140), True),
         part(
             "shirt",
             "shirt",
@@ -99,8 +117,11 @@ def parts_of(figure: Figure) -> tuple[tuple[Part, ...], Field]:
             (-wide, hem - 2, -19),
             (wide, neck_y + 5, 19),
             0.50,
-            (4800, 1500, 330),
+            (4700, 1500, 330),
             plain=worn.closed_shirt,
+            outside=worn.shirt_cloth,
+            ends=worn.shirt_ends,
+            seams=worn.shirt_seams,
         ),
         part(
             "trousers",
@@ -109,12 +130,26 @@ def parts_of(figure: Figure) -> tuple[tuple[Part, ...], Field]:
             (-21, 1, -19),
             (21, hem + 22, 17),
             0.55,
-            (4200, 1400, 330),
+            (4100, 1400, 330),
             plain=worn.closed_trousers,
+            outside=worn.trouser_cloth,
+            ends=worn.trouser_ends,
+            seams=worn.trouser_seams,
         ),
-        part("shoe", "shoes", left_shoe, (x - 7, -1, z - 10 * k), (x + 8, 14, z + 24 * k), 0.36, (620, 180, 56), True),
-        part("sole", "soles", left_sole, (x - 7, -1.5, z - 10 * k), (x + 8, 4, z + 24 * k), 0.36, (300, 110, 30), True),
-        part("laces", "laces", laces(figure), (x - 5, 3, z), (x + 5, 13, z + 14), 0.14, (220, 50, 0), True),
+        part("ankle", "skin", ankle(figure), (x - 6, 3, z - 7), (x + 6, 20, z + 7), 0.4, (130, 60, 0), True),
+        part(
+            "shoe",
+            "shoes",
+            left_shoe,
+            (x - 7, -1, z - 10 * k),
+            (x + 8, 14, z + 24 * k),
+            0.36,
+            (620, 180, 56),
+            True,
+            seams=shoe_seams(figure),
+        ),
+        part("sole", "soles", left_sole, (x - 7, -1.5, z - 10 * k), (x + 8, 4, z + 24 * k), 0.36, (210, 110, 30), True),
+        part("laces", "laces", laces(figure), (x - 5, 3, z), (x + 5, 13, z + 14), 0.14, (170, 50, 0), True),
     )
     everything = join(
         worn.body, (face, 0.6), (mirrored(left_arm), 0.3), (mirrored(left_shoe), 0.5), (mirrored(left_sole), 0.3)

@@ -93,6 +93,31 @@ def settled(field: Field, points: Floats, spacing: float) -> Floats:
     return points - step * np.minimum(1, spacing / np.maximum(length, 1e-12))
 
 
+def edged(mesh: Mesh, outside: Field, ends: Field, depth: float, length: float) -> Mesh:
+    """The mesh with a sharp edge where the surface `outside` = 0 meets the one `ends` = 0.
+
+    Marching cubes and simplification cut such an edge off unevenly; vertices nearer than `depth` to the outside and
+    `length` to the end are brought on to it.
+    """
+    positions = mesh.positions.copy()
+    near = np.flatnonzero((np.abs(outside(positions)) < depth) & (np.abs(ends(positions)) < length))
+    p = positions[near]
+    for _ in range(8):
+        p = settled(ends, settled(outside, p, length), length)
+    positions[near] = p
+    before, after = (_facing(q, mesh.triangles) for q in (mesh.positions, positions))
+    folded = np.sum(before * after, axis=1) < -0.1 * np.sum(before**2, axis=1)  # thin cloth, through itself
+    turned = mesh.triangles[folded]
+    positions[turned] = mesh.positions[turned]
+    return Mesh(positions, mesh.triangles)
+
+
+def _facing(positions: Floats, triangles: Integers) -> Floats:
+    """(T, 3) normals of triangles, as long as twice their areas."""
+    a, b, c = (positions[triangles[:, i]] for i in range(3))
+    return np.asarray(np.cross(b - a, c - a))
+
+
 def simplified(mesh: Mesh, triangles: int) -> Mesh:
     """At most about `triangles` triangles, chosen by quadric error (Garland & Heckbert 1997)."""
     import fast_simplification

@@ -157,6 +157,30 @@ def test_garments_skin_and_shoes_are_closed_surfaces(name, part):
 
 
 @pytest.mark.parametrize("name", NAMES)
+def test_an_ankle_joins_foot_and_leg_whatever_shows_between_shoe_and_trousers(name):
+    body = load_body(name)
+    ankle = body.skeleton.positions[JOINTS.index("leftFoot")]
+    skin_here = surface(body, "skin").positions
+    skin_here = skin_here[np.linalg.norm((skin_here - ankle)[:, [0, 2]], axis=1) < 0.06]
+    shoe, trousers = surface(body, "shoes").positions, surface(body, "trousers").positions
+    inside_shoe = skin_here[:, 1].min() < shoe[:, 1].max() - 0.02
+    inside_leg = trousers[:, 1].min() + 0.06 < skin_here[skin_here[:, 1] < 0.4, 1].max()
+    assert inside_shoe
+    assert inside_leg
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_shirts_hem_is_one_straight_edge(name):
+    """The lowest vertices that face outwards lie at one height: an uneven hem reads as rubber, not as cloth."""
+    shirt = surface(load_body(name), "shirt")
+    hem = shirt.positions[:, 1] < np.percentile(shirt.positions[:, 1], 1) + 0.008
+    outwards = hem & (np.abs(shirt.normals[:, 1]) < 0.5)
+    heights = shirt.positions[outwards, 1]
+    assert outwards.sum() > 30
+    assert np.mean(np.abs(heights - np.median(heights)) < 0.001) > 0.9
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_left_and_right_have_mirrored_weights(name):
     s = surface(load_body(name), "shoes")
     dense = np.zeros((len(s.positions), len(JOINTS)))
