@@ -15,17 +15,17 @@ from stimuli.body import Body, Surface
 VERTEX = np.dtype(
     [
         ("position", "3f4"),
+        ("material", "f4"),
         ("normal", "3f4"),
-        ("weights", "4f4"),
         ("occlusion", "f4"),
+        ("weights", "4f4"),
         ("joints", "4u1"),
-        ("material", "u4"),
     ]
 )
-LIT_FORMAT = "3f4 3f4 4f4 1f4 4u1 1u4"
-LIT_NAMES = ("position", "normal", "weights", "occlusion", "joints", "material")
-SHADOW_FORMAT = "3f4 12x 4f4 4x 4u1 4x"
-SHADOW_NAMES = ("position", "weights", "joints")
+LIT_FORMAT = "4f4 4f4 4f4 4u1"
+LIT_NAMES = ("position_material", "normal_sky", "weights", "joints")
+SHADOW_FORMAT = "4f4 16x 4f4 4u1"
+SHADOW_NAMES = ("position_material", "weights", "joints")
 
 MOST_MATERIALS = 24  # as in walker.frag.glsl
 MOST_KEPT = 48  # levels of bodies kept on the GPU, about 1 MB each

@@ -26,7 +26,8 @@ from experiment_app.render.part_map import SHADER_CONSTANTS
 from experiment_app.render.programs import build, set_if_used
 from experiment_app.render.shadow_map import set_light
 
-POSES_UNIT, INSTANCES_UNIT, PALETTE_UNIT = 0, 7, 8
+POSES_UNIT, PALETTE_UNIT = 0, 8
+INSTANCE_BYTES = 16
 CROWD = {**ON_CROWDS, "CROWD": "1"}
 FAR = {**CROWD, "SHADOW_TAPS": "1"}
 HAZE, FADED = {"OPEN_GROUND": "1", "HAZE": "1"}, {"FADED": "1"}
@@ -44,7 +45,7 @@ class CrowdPass:
         self._parts = build(context, "part_map.vert", "part_map.frag", {**SHADER_CONSTANTS, **CROWD})
         self._meshes: CrowdMeshes | None = None
         self._poses = _table(context, 64, 1)
-        self._tables = [_table(context, 1, 1), _table(context, 1, 1)]
+        self._tables = [context.buffer(reserve=INSTANCE_BYTES, dynamic=True) for _ in range(2)]
         self._seen = self._casting = Instances(np.zeros((0, 4), np.float32), ())
 
     def place(self, crowd: DrawnCrowd, viewpoint: Viewpoint, picture_height: int, forced: int | None = None) -> None:
@@ -65,7 +66,7 @@ class CrowdPass:
         self._casting = shadow_instances(heights, casting, cast.body, levels)
         self._poses = _written(self._context, self._poses, crowd.rows)
         for number, instances in enumerate((self._seen, self._casting)):
-            self._tables[number] = _written(self._context, self._tables[number], instances.table[None])
+            _fill(self._tables[number], instances.table)
 
     def draw_shadow(self, sunlight: Sunlight) -> None:
         """Draws the depth of everybody into the bound shadow map."""
@@ -119,13 +120,13 @@ class CrowdPass:
         """Draws batches of the instances in a table: 0 the seen, 1 the casting."""
         assert self._meshes is not None
         self._poses.use(POSES_UNIT)
-        self._tables[table].use(INSTANCES_UNIT)
         set_if_used(program, "poses", POSES_UNIT)
-        set_if_used(program, "instances", INSTANCES_UNIT)
         array = self._meshes.array(program, bare=program is self._parts or table == 1)
+        location = program["instance"].location
         for batch in batches:
             first, count = self._meshes.parts[batch.body][batch.level]
-            program["first_walker"].value = batch.first
+            start = batch.first * INSTANCE_BYTES
+            array.bind(location, "f", self._tables[table], "4f", start, INSTANCE_BYTES, divisor=1)
             array.render(moderngl.TRIANGLES, vertices=count, first=first, instances=batch.count)
 
     def release(self) -> None:
@@ -194,6 +195,13 @@ def _table(context: moderngl.Context, columns: int, rows: int) -> moderngl.Textu
     texture = context.texture((columns, rows), 4, dtype="f4")
     texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
     return texture
+
+
+def _fill(buffer: moderngl.Buffer, data: np.ndarray) -> None:
+    """Gives the buffer new contents, and as much room as they need."""
+    buffer.orphan(max(data.nbytes, buffer.size))
+    if data.nbytes:
+        buffer.write(data)
 
 
 def _written(context: moderngl.Context, texture: moderngl.Texture, data: np.ndarray) -> moderngl.Texture:

@@ -17,6 +17,10 @@ from experiment_app.render.stage import Stage
 from experiment_app.render.viewports import Viewport, viewports_of
 from experiment_app.scene import Page, Scene
 
+PRIMITIVE_RESTART = 0x8F9D
+"""moderngl turns it on. No mesh of ours has a restart in its indices, and a software driver looks for one in each index
+of each instance: 5 ms a frame with a crowd of 1000."""
+
 
 class Renderer:
     """Everything a window needs to show scenes.
@@ -27,6 +31,7 @@ class Renderer:
     """
 
     def __init__(self, context: moderngl.Context, size: tuple[int, int], pixel_ratio: float, samples: int) -> None:
+        context.disable_direct(PRIMITIVE_RESTART)
         self._picture = Picture(context, size, samples)
         self._context = context
         self._stage = Stage(context)

@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from experiment_app.render.body_buffers import SHADOW_FORMAT, SHADOW_NAMES, packed
+from experiment_app.render.body_buffers import LIT_FORMAT, LIT_NAMES, packed
 from experiment_app.render.light import LIGHTS, fit_sunlight
 from experiment_app.render.picture import Picture
 from experiment_app.render.programs import shader_text
@@ -18,13 +18,14 @@ from experiment_app.walkers import drawn_walkers
 from stimuli.skinning import skin
 
 CAPTURE = """
-in vec3 normal;
+in vec4 normal_sky;
 out vec3 skinned;
 out vec3 turned;
 void main() {
     vec4 x_row, y_row, z_row;
     blend_matrix(x_row, y_row, z_row);
-    vec4 bound = vec4(position, 1.0);
+    vec4 bound = bind_vertex();
+    vec3 normal = normal_sky.xyz;
     skinned = vec3(dot(x_row, bound), dot(y_row, bound), dot(z_row, bound)) + walker_place();
     turned = vec3(dot(x_row.xyz, normal), dot(y_row.xyz, normal), dot(z_row.xyz, normal));
 }
@@ -49,8 +50,7 @@ def test_skinning_on_the_gpu_is_skinning_in_numpy(context: moderngl.Context) -> 
     poses = context.texture((64, 2), 4, rows.tobytes(), dtype="f4")
     poses.use(0)
     buffer = context.buffer(vertices.tobytes())
-    form = SHADOW_FORMAT.replace("12x", "3f4", 1)
-    array = context.vertex_array(program, [(buffer, form, SHADOW_NAMES[0], "normal", *SHADOW_NAMES[1:])])
+    array = context.vertex_array(program, [(buffer, LIT_FORMAT, *LIT_NAMES)])
     result = context.buffer(reserve=2 * len(vertices) * 24)
     context.simple_framebuffer((4, 4)).use()  # without a window nothing runs unless some framebuffer is bound
     array.transform(result, moderngl.POINTS, vertices=len(vertices), instances=2)

@@ -11,9 +11,7 @@ uniform mat4 world_to_clip;
 uniform sampler2D palette;              // column: material, row: look; linear rgb, roughness
 uniform vec4 finishes[MOST_MATERIALS];  // skin, sheen, specular strength, unused
 
-in vec3 normal;
-in float occlusion;
-in uint material;
+in vec4 normal_sky;                     // of the bind pose; how much of the sky it sees
 
 centroid out vec3 colour;             // inside the triangle also at its edges, or it may leave 0 .. 1
 #ifdef FADED
@@ -23,20 +21,21 @@ flat out vec2 drawn_in;                 // of the screen's noise
 void main() {
     vec4 x_row, y_row, z_row;
     blend_matrix(x_row, y_row, z_row);
-    vec4 bound = vec4(position, 1.0);
+    vec4 bound = bind_vertex();
     vec3 skinned = vec3(dot(x_row, bound), dot(y_row, bound), dot(z_row, bound));
+    vec3 normal = normal_sky.xyz;
     vec3 turned = normalize(vec3(dot(x_row.xyz, normal), dot(y_row.xyz, normal), dot(z_row.xyz, normal)));
     vec3 world = skinned + walker_place();
     gl_Position = world_to_clip * vec4(world, 1.0);
 
-    vec4 instance = texelFetch(instances, ivec2(first_walker + gl_InstanceID, 0), 0);
 #ifdef FADED
     drawn_in = instance.yz;
 #endif
-    vec3 albedo = texelFetch(palette, ivec2(int(material), int(instance.w + 0.5)), 0).rgb;
-    vec4 finish = finishes[material];
+    vec3 albedo = texelFetch(palette, ivec2(material_number(), int(instance.w + 0.5)), 0).rgb;
+    vec4 finish = finishes[material_number()];
     vec3 to_eye = normalize(eye - world);
     float above_ground = mix(0.62, 1.0, smoothstep(0.0, 0.35, max(skinned.y, 0.0) + 0.3 * max(turned.y, 0.0)));
+    float occlusion = normal_sky.w;
     float open = occlusion * above_ground;
     float facing = max((dot(turned, to_sun) + 0.2 * finish.x) / (1.0 + 0.2 * finish.x), 0.0);
     vec3 light = sky_light(turned) * open;

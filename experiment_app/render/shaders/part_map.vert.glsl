@@ -13,7 +13,7 @@ out float side;
 void main() {
     vec4 x_row, y_row, z_row;
     blend_matrix(x_row, y_row, z_row);
-    vec4 bound = vec4(position, 1.0);
+    vec4 bound = bind_vertex();
     vec3 world = vec3(dot(x_row, bound), dot(y_row, bound), dot(z_row, bound)) + walker_place();
     share = vec4(0.0);
     side = 0.0;

@@ -7,24 +7,36 @@
 #endif
 
 uniform sampler2D poses;
-uniform int first_walker;
 #ifdef CROWD
-uniform sampler2D instances;  // per instance: row of `poses`, then the shares of the screen's noise it is drawn in
+in vec4 instance;  // row of `poses`, lowest and highest of the screen's noise that it is drawn in, look
+#else
+uniform int first_walker;
 #endif
 
-in vec3 position;
-in uvec4 joints;
+// By fours, as software drivers read attributes fastest.
+in vec4 position_material;  // m in the bind pose; the material's number
 in vec4 weights;
+in uvec4 joints;
 
 const int PLACE_TEXEL = 63;
 
 // The row of `poses` of the walker being drawn.
 int walker_row() {
 #ifdef CROWD
-    return int(texelFetch(instances, ivec2(first_walker + gl_InstanceID, 0), 0).x + 0.5);
+    return int(instance.x + 0.5);
 #else
     return first_walker + gl_InstanceID;
 #endif
+}
+
+// The vertex in the bind pose, as a column to multiply.
+vec4 bind_vertex() {
+    return vec4(position_material.xyz, 1.0);
+}
+
+// The material's number.
+int material_number() {
+    return int(position_material.w + 0.5);
 }
 
 void blend_matrix(out vec4 x_row, out vec4 y_row, out vec4 z_row) {

@@ -3,9 +3,7 @@
 
 uniform mat4 world_to_clip;
 
-in vec3 normal;
-in float occlusion;
-in uint material;
+in vec4 normal_sky;         // of the bind pose; how much of the sky it sees
 
 out vec3 world_position;
 out vec3 world_normal;
@@ -26,19 +24,19 @@ out vec2 picture_place;
 void main() {
     vec4 x_row, y_row, z_row;
     blend_matrix(x_row, y_row, z_row);
-    vec4 bound = vec4(position, 1.0);
+    vec4 bound = bind_vertex();
     vec3 skinned = vec3(dot(x_row, bound), dot(y_row, bound), dot(z_row, bound));
+    vec3 normal = normal_sky.xyz;
     world_normal = vec3(dot(x_row.xyz, normal), dot(y_row.xyz, normal), dot(z_row.xyz, normal));
     world_position = skinned + walker_place();
     sole = vec2(skinned.y, 0.0);
-    sky_seen = occlusion;
-    surface = int(material);
+    sky_seen = normal_sky.w;
+    surface = material_number();
 #ifdef CROWD
-    vec4 instance = texelFetch(instances, ivec2(first_walker + gl_InstanceID, 0), 0);
     look = int(instance.w + 0.5);
     drawn_in = instance.yz;
 #else
-    bind_place = position;
+    bind_place = bound.xyz;
 #endif
 #ifdef TEXTURED
     picture_place = picture_at;
