@@ -148,7 +148,11 @@ def _training_level(study: Study, factor: str, level: Any, where: Place) -> Iter
             yield Mistake(where, f"{level!r} is not a number")
             return
     elif all(isinstance(known, str) for known in study.factors[factor]) and not isinstance(level, str):
-        yield Mistake(where, f"{level!r} is not a name")
+        if not any(
+            setting == f"${factor}" and not list(unfit(level, kind, where, place))
+            for setting, place, kind in settings_of(study)
+        ):  # else the factor's own levels are the mistake
+            yield Mistake(where, f"{level!r} is not a name")
         return
     for setting, place, kind in settings_of(study):
         if setting == f"${factor}":

@@ -15,6 +15,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, TypeAdapter, Va
 
 from protocols.mistake import Mistake, Place, no_such
 from protocols.parts import Level, Number, Part, Reference, Speed, StepFrequency, Text
+from protocols.wrong_types import wrong_type
 
 FACTOR, TABLE, CONSTANT = "$factor", "$table", "$constant"
 
@@ -130,7 +131,8 @@ def unfit(value: Any, kind: Any, where: Place, place: Place) -> Iterator[Mistake
         found = error.errors(include_url=False)[0]
         name = ".".join(str(part) for part in place)
         if found["type"] in ("float_type", "int_type"):
-            yield Mistake(where, f"{value!r} is not a number, and {name} takes it from here")
+            quoted = "; take the quotes away" if "take the quotes" in wrong_type(found["type"], value) else ""
+            yield Mistake(where, f"{value!r} is not a number, and {name} takes it from here{quoted}")
         elif found["type"] == "greater_than" and found["ctx"]["gt"] == 0.0:
             yield Mistake(where, f"{value} must be more than 0")
         elif set(found.get("ctx", {})) & LIMITS.keys():

@@ -9,7 +9,7 @@ import difflib
 import hashlib
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from io import StringIO
 from pathlib import Path
@@ -21,6 +21,7 @@ from pydantic import BaseModel, ValidationError
 from protocols.mistake import Mistake, Place
 from protocols.setting import CONSTANT, FACTOR, LIMITS, TABLE
 from protocols.study import Study
+from protocols.wrong_types import shortened, wrong_type
 
 MISSING = "this key is missing"
 
@@ -149,6 +150,12 @@ def _yaml_problem(error: Any) -> str:
         return "a colon and a space are missing here or in the line above, as in rate: 10"
     if problem.startswith(("expected ',' or", "did not find expected ',' or")):
         return f"the bracket opened {opened} is not closed before this"
+    if problem.startswith("found undefined alias"):
+        return 'a text that begins with * needs quotes, as "*"'
+    if problem.startswith("found character") and "cannot start" in problem:
+        return f"a text that begins with {problem.split(chr(39))[1]} needs quotes"
+    if problem.startswith("but found another document"):
+        return "--- begins a second study here; a file holds one"
     if "end of stream" in problem and "quoted" in (error.context or ""):
         return f"the quote opened {opened} is not closed"
     if problem.startswith("expected <block end>"):
@@ -178,7 +185,9 @@ def _explain(error: Any, document: Any) -> Mistake:
     where = _place(document, error["loc"])
     kind, limits = error["type"], error.get("ctx") or {}
     value = limits.get("tag", error["input"])
-    shown = repr(value) if len(repr(value)) <= 60 else repr(value)[:57] + "..."
+    shown = shortened(value)
+    if wrong := wrong_type(kind, value):
+        return Mistake(where, wrong)
     if kind == "extra_forbidden":
         allowed = _allowed_keys(document, where[:-1])
         near = difflib.get_close_matches(str(where[-1]), allowed, n=1, cutoff=0.6)
@@ -203,7 +212,7 @@ def _explain(error: Any, document: Any) -> Mistake:
     if kind == "string_pattern_mismatch":
         return Mistake(where, f"{shown} does not fit; letters, digits and _ only, starting with a letter")
     if kind in ("too_short", "too_long"):
-        return Mistake(where, f"needs {error['msg'].split('should have ')[-1]}")
+        return Mistake(where, f"needs {error['msg'].split('should have ')[-1].replace(' after validation', '')}")
     said = error["msg"].removeprefix("Value error, ")
     message = said[0].lower() + said[1:]
     return Mistake(where, f"{shown}: {message.replace('input should be', 'must be')}")
@@ -211,8 +220,25 @@ def _explain(error: Any, document: Any) -> Mistake:
 
 def _without_echoes(mistakes: Sequence[Mistake]) -> list[Mistake]:
     """The mistakes without "missing" where a misspelt key was found for it: one typo, one sentence."""
+    mistakes = _one_of_each_union(mistakes)
     meant = {(m.where[:-1], m.message.partition("did you mean ")[2].rstrip("?")) for m in mistakes if m.on_key}
     return [m for m in mistakes if m.message != MISSING or (m.where[:-1], m.where[-1]) not in meant]
+
+
+def _one_of_each_union(mistakes: Sequence[Mistake]) -> list[Mistake]:
+    """The mistakes with one where a value fits no type of several: "must be text, or a number"."""
+    kept: dict[Place, Mistake] = {}
+    others = []
+    for mistake in mistakes:
+        value, must, wanted = mistake.message.partition(" must be ")
+        first = kept.get(mistake.where)
+        if not must or mistake.on_key:
+            others.append(mistake)
+        elif first is None:
+            kept[mistake.where] = mistake
+        elif wanted not in first.message and first.message.startswith(value):
+            kept[mistake.where] = replace(first, message=f"{first.message}, or {wanted}")
+    return [*kept.values(), *others]
 
 
 TYPE_TAGS = {"str", "float", "int", "[key]", FACTOR, TABLE, CONSTANT}

@@ -40,8 +40,20 @@ def place(text: str, sought: str) -> str:
     [
         ("repetitions: 4 ", "repetition: 4 ", "repetition: 4", "unknown key; did you mean repetitions?"),
         ("order: random", "order: randm", "randm", "did you mean random?"),
-        ("rate: 10 ", "rate: brisk ", "brisk", "'brisk': must be a valid number"),
-        ("rate: 10 ", "rate: '10' ", "'10'", "must be a valid number"),
+        ("rate: 10 ", "rate: brisk ", "brisk", "'brisk' must be a number, as 1.2"),
+        ("rate: 10 ", "rate: '10' ", "'10'", "'10' must be a number, as 1.2; take the quotes away"),
+        ("rate: 10 ", "rate: '1,5' ", "'1,5'", "'1,5' must be a number, as 1.2; write it with a point"),
+        ("repetitions: 4 ", "repetitions: '4' ", "'4'", "'4' must be a whole number, as 4; take the quotes away"),
+        ("repetitions: 4 ", "repetitions: 2026-11-24 ", "2026-11-24", "2026-11-24 must be a whole number, as 4"),
+        ("title: Ready?", "title: #ready", " #ready", "nothing stands here; it must be text (what follows # is"),
+        ("title: Ready?", "title: 10", "10\n    text: |\n      That was", 'be text; put it into quotes, as "10"'),
+        ("title: Ready?", "title: *ready*", "*ready", "a text that begins with * needs quotes"),
+        ("title: Ready?", "title: %ready", "%ready", "a text that begins with % needs quotes"),
+        ("title: Ready?", "title: @ready", "@ready", "a text that begins with @ needs quotes"),
+        ("between: [sex]", "between: sex", "sex\n  post_hoc", "'sex' must be a list, as [a, b]; put it into brackets"),
+        ("actor: [F1, F2, M1, M2] ", "actor:\n    -F1\n    -F2", "-F1", "- and a space begin each line of one"),
+        ("[0.8, 1.0, 1.2]", "[[0.8, 1.0], 1.2]", "[0.8, 1.0], 1.2", "[0.8, 1.0] must be text, or a number, as 1.2"),
+        ("[0.8, 1.0, 1.2]", "['0.8', '1.0']", "'0.8'", "takes it from here; take the quotes away"),
         ("minimum_looking_time: 2 ", "minimum_looking_time: -1 ", "-1", "must be at least 0"),
         ("start: $start", "start: $strat", "$strat", "did you mean $start?"),
         ("[0.8, 1.0, 1.2]", "[0.8, slow, 1.2]", "slow, 1.2", "'slow' is not a number"),
@@ -72,6 +84,15 @@ def test_a_mistake_is_named_with_line_column_and_what_is_allowed(old, new, at, s
     said = message(text)
     assert says in said
     assert said.startswith(f"s.yaml:{place(text, at)}:"), (said, place(text, at))
+
+
+def test_quoted_levels_are_not_blamed_on_the_training_trials():
+    said = message(changed(("[0.8, 1.0, 1.2]", "['0.8', '1.0', '1.2']")))
+    assert "practice" not in said
+
+
+def test_a_second_study_in_a_file_is_told():
+    assert "--- begins a second study here; a file holds one" in message(changed() + "\n---\nstudy: b\n")
 
 
 def test_all_mistakes_are_reported_at_once():
