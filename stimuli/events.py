@@ -37,6 +37,7 @@ SAME_WALK = 0.6  # of the upper quartile of stride speeds: a slower stride is st
 SLOWER, LONGER = 0.15, 0.15  # of the others' medians: an end stride beyond either is setting off or stopping
 BELOW_PACE = 0.26  # of the others' median at their strikes: a pelvis so much slower is only getting going, or stopping
 PATH_CUTOFF = 2.0  # Hz, low-pass of the pelvis' path before its length is taken
+GOING = 0.25  # m/s: at twice that the pelvis' way alone tells the direction of walking, below it its facing
 STILL = 0.25  # of foot swing: a pelvis that travels less per stride is on a treadmill
 
 
@@ -60,11 +61,20 @@ class FootPaths:
 
     @property
     def heading(self) -> Floats:
-        """(T, 2) unit horizontal (x, z) direction the pelvis faces, smoothed over about a stride."""
-        facing = np.cross(self.left_axis, [0.0, 1.0, 0.0])[:, [0, 2]]
-        facing = facing / np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-9)
-        facing = _low_pass(facing, 0.5, self.rate)
-        return facing / np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-9)
+        """(T, 2) unit horizontal (x, z) direction of walking, smoothed over about a stride.
+
+        It is the way the pelvis goes, as a pelvis may be carried turned aside, and the way it faces where it stays.
+        """
+        facing = _unit(_low_pass(_unit(np.cross(self.left_axis, [0.0, 1.0, 0.0])[:, [0, 2]]), 0.5, self.rate))
+        if len(facing) < 2:
+            return facing
+        velocity = np.gradient(_low_pass(self.pelvis[:, [0, 2]], 0.5, self.rate), axis=0) * self.rate
+        going = np.clip(np.linalg.norm(velocity, axis=1, keepdims=True) / GOING - 1.0, 0.0, 1.0)
+        return _unit((1.0 - going) * facing + going * _unit(velocity))
+
+
+def _unit(vectors: Floats) -> Floats:
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9))
 
 
 @dataclass(frozen=True)
@@ -79,7 +89,7 @@ class GaitMeasures:
     step_width: float  # m, heel to the line through the other foot's two placements (Huxham et al. 2006); nan if none
     stance_share_left: float  # of the stride, heel strike to toe-off; nan if no toe-off lies inside a stride
     stance_share_right: float
-    steady: bool  # False: only one stride is left of which to tell
+    steady: bool  # False: there is only one stride to tell from, or no two that are alike
     on_the_spot: bool  # a treadmill: speed is the stance feet's backward speed
 
 
@@ -297,6 +307,7 @@ def _strides(paths: FootPaths, events: Sequence[FootEvent]) -> list[_Stride]:
 def _steady(strides: list[_Stride]) -> tuple[list[_Stride], bool]:
     """The longest run of walking strides without those of setting off and stopping, and whether that is two or more.
 
+    A walk that is nothing but setting off and stopping, with no two strides alike, keeps all of its run.
     A stride much slower than the others is standing, which parts runs; at the ends of a run strides are dropped
     while they are slower, or last longer, than the rest by more than SLOWER and LONGER, or begin or end below pace.
     """
@@ -307,14 +318,14 @@ def _steady(strides: list[_Stride]) -> tuple[list[_Stride], bool]:
             runs[-1].append(stride)
         elif runs[-1]:
             runs.append([])
-    run = max(runs, key=len)
+    whole = run = max(runs, key=len)
     while len(run) > 1:
         first = max(_unlike(run[0], run[1:]), _below_pace(run[0].first_speed, [s.first_speed for s in run[1:]]))
         last = max(_unlike(run[-1], run[:-1]), _below_pace(run[-1].last_speed, [s.last_speed for s in run[:-1]]))
         if max(first, last) <= 1.0:
             break
         run = run[1:] if first >= last else run[:-1]
-    return run, len(run) > 1
+    return (whole if len(run) == 1 < len(whole) - 1 else run), len(run) > 1
 
 
 def _unlike(stride: _Stride, others: list[_Stride]) -> float:

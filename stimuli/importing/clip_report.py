@@ -96,7 +96,9 @@ def _measured(clip: Clip) -> tuple[tuple[FootEvent, ...], GaitMeasures | None, l
         measures = measure_paths(paths, events, clip.name)
     except GaitError as error:
         return events, None, [*warnings, str(error)]
-    if not measures.steady:
+    if not measures.steady and measures.steps_used > 2:
+        warnings.append("no two strides are alike: the walk only sets off and stops, so its measures mean little")
+    elif not measures.steady:
         warnings.append("only one stride could be used, so the step frequency is good to about 2 per cent")
     if measures.on_the_spot:
         warnings.append("the walker stays on the spot; the speed is that of the standing feet, as on a treadmill")

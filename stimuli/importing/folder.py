@@ -94,7 +94,7 @@ def _stored(cycle: ArrangedCycle, walks: list[CapturedWalk]) -> StoredCycle:
 
 def _notes(walks: list[CapturedWalk]) -> tuple[str, ...]:
     notes = [f"{walk.file}: {warning}" for walk in walks for warning in walk.warnings]
-    notes += [f"{walk.file}: only one stride to choose from" for walk in walks if not walk.measured.steady]
+    notes += [f"{walk.file}: no two strides alike to choose from" for walk in walks if not walk.measured.steady]
     absent = sorted({part for walk in walks for part in _absent(walk)})
     if absent:
         notes.append(f"{', '.join(absent)}: not in the captures, taken from the gait model")

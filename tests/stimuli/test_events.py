@@ -17,7 +17,8 @@ MOCAP = Path(__file__).parents[2].parent / "shared" / "mocap"
 needs_captures = pytest.mark.skipif(not MOCAP.is_dir(), reason="the shared captures are not beside the checkout")
 
 NOT_WITHIN_2_PERCENT = {
-    "cgspeed_max_131_01": "a hopping start and stop, no four even steps of which could be the manifest's",
+    "cgspeed_max_131_01": "hops and stops, each step shorter than the last; the manifest counts from one extreme of "
+    "the feet's offset to another, 0.1 s from the strikes at either end: -1.9 % of speed, -4.8 % of step frequency",
     "cgspeed_max_131_01_metres": "the same take",
 }
 
@@ -45,7 +46,7 @@ def test_speed_and_step_frequency_are_the_manifests(row):
     """Within 2 %; within 6 % where the manifest itself has two steps only."""
     limit = 0.06 if int(row["n_steps_used"]) <= 2 else 0.02
     if Path(row["file"]).stem in NOT_WITHIN_2_PERCENT:
-        limit = 0.09
+        limit = 0.05
     assert np.max(np.abs(errors(row))) <= limit
 
 
@@ -174,6 +175,27 @@ def test_a_synthetic_walker_is_measured_as_it_was_made(step_length, step_frequen
     assert measures.speed == pytest.approx(gait.speed, rel=0.005)
     assert measures.step_length_left == pytest.approx(step_length, rel=0.02)
     assert measures.step_width == pytest.approx(0.12, abs=0.005)
+
+
+@pytest.mark.parametrize("turn", [30.0, 60.0, 85.0])
+def test_a_pelvis_carried_turned_aside_changes_no_step(turn):
+    """As in CMU 131_01, where it faces 96 degrees aside for a second and a step was missed."""
+    _, paths = synthetic()
+    times = np.arange(len(paths.pelvis)) / paths.rate
+    angle = np.radians(turn) * np.exp(-(((times - 3.0) / 0.6) ** 2))
+    aside = 0.2 * np.stack([np.cos(angle), 0 * angle, -np.sin(angle)], axis=1)
+    turned = FootPaths(paths.pelvis, aside, paths.heels, paths.toes, paths.rate)
+    before, after = ([(event.side, event.kind, event.time) for event in find_events(p)] for p in (paths, turned))
+    assert [event[:2] for event in before] == [event[:2] for event in after]
+    np.testing.assert_allclose([event[2] for event in before], [event[2] for event in after], atol=0.005)
+
+
+@needs_captures
+def test_a_walk_without_two_strides_alike_keeps_all_of_them():
+    """CMU 131_01 sets off, hops twice and stops: what is left of it without setting off and stopping is one stride."""
+    measures = measure(read_bvh(MOCAP / "bvh/cmu-cgspeed/cgspeed_max_131_01.bvh"))
+    assert not measures.steady
+    assert measures.steps_used == 5
 
 
 def test_standing_still_is_no_walk():
