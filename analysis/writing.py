@@ -21,6 +21,8 @@ def write_bytes(path: Path, content: bytes) -> Path:
     except OSError as error:
         with suppress(OSError):
             temporary.unlink()
+        if path.parent.is_file():
+            raise AnalysisError(f"{path.parent} is a file; name a folder with --out, or one that is new.") from None
         raise AnalysisError(f"{path} cannot be written: {error.strerror or error}.") from None
     return path
 

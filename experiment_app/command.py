@@ -18,7 +18,7 @@ from experiment_app.data_commands import StudyFolder, console, drop_out, export,
 from experiment_app.errors import RunError, UsageError
 from experiment_app.motion_commands import actor_commands, clip
 from experiment_app.style_commands import style_commands
-from experiment_app.terminal import out, problems, say, with_progress
+from experiment_app.terminal import out, problems, say, typed, with_progress
 
 app = App(
     name="gaitlab",
@@ -208,7 +208,7 @@ def simulate(
     for _ in with_progress(simulated_runs(file, count, data, seed), count, "Simulating participants"):
         pass
     out.print(f"{count} simulated participants in {data / file.study.study}", markup=False)
-    out.print(f"Analyse them with: gaitlab analyse {data / file.study.study} --out report", markup=False)
+    out.print(f"Analyse them with: gaitlab analyse {typed(data / file.study.study)} --out report", markup=False)
     return 0
 
 
@@ -471,7 +471,7 @@ def copy(
     beside = path.parent / "study.schema.json"
     if not beside.exists():
         beside.write_text(schema_text(), encoding="utf-8")
-    out.print(f"Copied to {path}. Edit it, then: gaitlab check {path}", markup=False)
+    out.print(f"Copied to {path}. Edit it, then: gaitlab check {typed(path)}", markup=False)
     return 0
 
 

@@ -11,7 +11,7 @@ from rich.console import Console
 
 from experiment_app.derived import Derived, note_derived
 from experiment_app.errors import UsageError
-from experiment_app.terminal import out, problems, say
+from experiment_app.terminal import out, problems, say, typed
 
 StudyFolder = Annotated[Path, Parameter(help="The study's folder of data, as data/walk_ratio.")]
 
@@ -39,7 +39,9 @@ def export(
         f"{done.participants} participants, {done.runs} runs, {len(done.paths)} files in {out_folder}", markup=False
     )
     if to == "bids":
-        out.print(f"Check it with: bids-validator-deno {out_folder}  (pip install 'gaitlab[validate]')", markup=False)
+        out.print(
+            f"Check it with: bids-validator-deno {typed(out_folder)}  (pip install 'gaitlab[validate]')", markup=False
+        )
     note_derived(folder, Derived("export", to, str(out_folder.resolve())))
     return 0
 

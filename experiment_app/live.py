@@ -36,6 +36,7 @@ from experiment_app.opening import (
 from experiment_app.participants import first_headers
 from experiment_app.run_folder import Run, check_participant
 from experiment_app.staging import crowd_of, making_of
+from experiment_app.terminal import typed
 from experiment_app.timing_page import write_certificate
 from experiment_app.triggers import trigger_line, triggering
 from experiment_app.walkers import cast, own_step_frequency
@@ -131,7 +132,8 @@ def run_live(
         say(f"Participant {participant} is number {opened.participant_number}{_group(opened)}.")
         number = opened.run.sittings + 1
         sitting = crash_note(opened.run.folder, number)
-        command = f"gaitlab run {study} --participant {participant} --data {data}{' --pilot' if pilot else ''}"
+        kind = " --pilot" if pilot else ""
+        command = f"gaitlab run {typed(study)} --participant {participant} --data {typed(data)}{kind}"
 
         def last_words(reason: str) -> None:
             leave_note(opened.run.folder, number, reason)
@@ -162,7 +164,10 @@ def _certify(run: Run, say: Callable[[str], None]) -> None:
     try:
         say(f"Timing: {write_certificate(run)}")
     except OSError as error:
-        say(f"The timing certificate was not written ({error.strerror}); gaitlab certificate {run.folder} makes it.")
+        say(
+            f"The timing certificate was not written ({error.strerror}); "
+            f"gaitlab certificate {typed(run.folder)} makes it."
+        )
 
 
 def _continues(old: Run, file: StudyFile, resume: str, ask: Callable[[str], bool], say: Callable[[str], None]) -> bool:

@@ -26,6 +26,12 @@ class ShowProgress(Protocol):
         """The items, as they are."""
 
 
+def typed(path: object) -> str:
+    """A path as it is typed in a command: in quotes where a blank or a sign would part it, for sh and Windows alike."""
+    plain = all(sign.isalnum() or sign in "-_./\\:+,@%=~" for sign in str(path))
+    return str(path) if plain else f'"{path}"'
+
+
 def say(sentence: str) -> None:
     """Prints a sentence as it is: square brackets in it are no markup."""
     out.print(sentence, markup=False)

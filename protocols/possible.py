@@ -28,11 +28,8 @@ class Span:
     def among(self, value: str) -> list[float]:
         """Numbers of the span that tell what a comparison with a value can come out as: its ends, and the nearest."""
         top = self.minimum + 1.0 if self.maximum == math.inf else self.maximum
-        try:
-            wanted = float(value)
-        except ValueError:
-            return [self.minimum, top]
-        if not math.isfinite(wanted):
+        wanted = _number(value)
+        if wanted is None:
             return [self.minimum, top]
         top = max(top, wanted + 1.0) if self.maximum == math.inf else top
         near = min(max(wanted, self.minimum), top)
@@ -40,6 +37,13 @@ class Span:
             return [self.minimum, near, top]
         point = self.minimum + round((near - self.minimum) / self.step) * self.step
         return [self.minimum, wanted if math.isclose(point, wanted, rel_tol=1e-9, abs_tol=1e-9) else point, top]
+
+
+def _number(text: str) -> float | None:
+    try:
+        return float(text) if math.isfinite(float(text)) else None
+    except ValueError:
+        return None
 
 
 Possible = Span | tuple[Level, ...]
@@ -60,6 +64,11 @@ def condition_mistakes(
     both_ways: a condition that every trial meets is a mistake, too, as an answer that is always yes.
     """
     condition = read_condition(text)
+    if " or " in text:
+        yield Mistake(
+            where, f"{text!r} joins conditions by or, which cannot be; write one condition, or two exclusions"
+        )
+        return
     if condition is None:
         yield Mistake(where, f"{text!r} is no condition; write one as `{example}`")
         return
@@ -77,6 +86,8 @@ def _foregone(condition: Condition, possible: Possible, both_ways: bool) -> str:
     values = possible.among(value) if isinstance(possible, Span) else possible
     met = {condition.holds({column: one}) for one in values}
     can_be = str(possible) if isinstance(possible, Span) else ", ".join(map(str, possible))
+    if isinstance(possible, Span) and _number(value) is None:
+        return f"{column} is a number, and {value} is none; it can be: {can_be}"
     if True not in met:
         if sign == "==":
             return f"{column} is never {value}; it can be: {can_be}"

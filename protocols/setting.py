@@ -141,7 +141,8 @@ def unfit(value: Any, kind: Any, where: Place, place: Place) -> Iterator[Mistake
         elif found["type"] == "literal_error":
             yield Mistake(where, f"{value} is not allowed for {name}; allowed: {found['ctx']['expected']}")
         else:
-            yield Mistake(where, f"{value!r}: {found['msg'][0].lower() + found['msg'][1:]}, for {name}")
+            why = wrong_type(found["type"], value) or f"{value!r}: {found['msg'][0].lower() + found['msg'][1:]}"
+            yield Mistake(where, f"{why}, for {name}")
 
 
 class SettingsPart(Part, ABC):

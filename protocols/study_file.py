@@ -78,9 +78,10 @@ def find_study(study: str) -> tuple[str, bytes]:
         return f"{study}.yaml", (files("protocols") / "studies" / f"{study}.yaml").read_bytes()
     if path.is_dir():
         raise FileNotFoundError(f"{study} is a folder; name a study file in it, as {path / 'my_study.yaml'}.")
-    beside = [p.name for p in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
-    near = difflib.get_close_matches(path.name, [*shipped_studies(), *beside], n=1)
-    hint = f" Did you mean {near[0]}?" if near else ""
+    beside = {p.stem: str(p) for p in path.parent.glob("*.y*ml")} if path.parent.is_dir() else {}
+    known = {**{name: name for name in shipped_studies()}, **beside}  # compared without .yaml, which all have
+    near = difflib.get_close_matches(path.name if path.name in known else path.stem, known, n=1)
+    hint = f" Did you mean {known[near[0]]}?" if near else ""
     raise FileNotFoundError(
         f"{study}: there is no such file and no shipped study of that name "
         f"(shipped: {', '.join(shipped_studies())}).{hint}"
@@ -202,13 +203,26 @@ def _explain(error: Any, document: Any) -> Mistake:
         return Mistake(where, f"{shown} is out of range; it must be {limit}")
     if kind in ("literal_error", "union_tag_invalid"):
         expected = str(limits.get("expected") or limits.get("expected_tags")).replace("'", "")
-        near = difflib.get_close_matches(str(value), [w.strip() for w in expected.replace(" or ", ",").split(",")])
+        words = [w.strip() for w in expected.replace(" or ", ",").split(",")]
+        near = difflib.get_close_matches(str(value).lower(), words)
         hint = f"; did you mean {near[0]}?" if near else ""
+        if not isinstance(value, str) and str(value) in words:
+            return Mistake(where, f'{shown} needs quotes here, as "{value}"')
         if len(expected) > 160:
             expected = "the names of keys, as left, right, enter, space, a, 1"
         return Mistake(where, f"{shown} is not allowed; allowed: {expected}{hint}")
     if kind == "string_pattern_mismatch" and where[-1:] == ("variation",):
         return Mistake(where, f"{shown} does not fit; write 1:1 to 1:1000 (walkers per motion), or 1")
+    if kind == "string_pattern_mismatch" and where == ("language",):
+        return Mistake(where, f"{shown} is no language; write its code, as en, de or pt-BR")
+    if kind == "string_pattern_mismatch" and shown[1:2] == "$":
+        return Mistake(where, f"{shown} does not fit; write the factor's name after the $, as $speed")
+    if kind == "string_too_short":
+        return Mistake(where, "there is nothing between the quotes; write a text")
+    if kind == "invalid_key":
+        return Mistake(
+            where, "a key is a name in letters, as speed; quotes make one of a number or of yes and no", True
+        )
     if kind == "string_pattern_mismatch":
         return Mistake(where, f"{shown} does not fit; letters, digits and _ only, starting with a letter")
     if kind in ("too_short", "too_long"):
@@ -251,7 +265,7 @@ def _place(document: Any, location: Iterable[str | int]) -> Place:
     for part in location:
         if isinstance(node, dict) and "kind" in node and node["kind"] == part:
             continue
-        if isinstance(part, str) and (part in TYPE_TAGS or part.startswith(("constrained-", "function-"))):
+        if isinstance(part, str) and (part in TYPE_TAGS or part.startswith(("constrained-", "function-", "dict["))):
             continue
         where.append(part)
         node = _at(node, part)

@@ -37,7 +37,8 @@ def _way_out(wanted: str, value: Any) -> str:
     if "number" in wanted and isinstance(value, str) and _is_number(value.replace(",", ".")):
         return "; write it with a point" if "," in value else "; take the quotes away"
     if wanted.startswith("a list") and isinstance(value, str):
-        return f"; put it into brackets, as [{value}]" if " " not in value else "; - and a space begin each line of one"
+        dashes = value.startswith("-") or " " in value.replace(", ", "")
+        return "; - and a space begin each line of one" if dashes else f"; put it into brackets, as [{value}]"
     return ""
 
 

@@ -130,3 +130,28 @@ def test_a_film_that_cannot_be_written_is_refused_before_anything_is_drawn(tmp_p
     (tmp_path / "there.mp4").mkdir()
     with pytest.raises(UsageError, match=says):
         write_film(iter(()), Fraction(60), tmp_path / name)
+
+
+def test_commands_that_are_told_can_be_typed_whatever_is_in_their_paths(tmp_path, capfd):
+    study, data = tmp_path / "my studies" / "my study.yaml", tmp_path / "my däta"
+    study.parent.mkdir()
+    assert run(["copy", "walk_ratio", str(study)]) == 0
+    assert f'gaitlab check "{study}"' in " ".join(capfd.readouterr().out.split())
+    assert run(["simulate", "walk_ratio", "--participants", "1", "--data", str(data)]) == 0
+    assert f'gaitlab analyse "{data / "walk_ratio"}"' in " ".join(capfd.readouterr().out.split())
+
+
+def test_a_file_where_a_folder_for_results_should_be_is_told(tmp_path, capfd):
+    play(opened(tmp_path))
+    (tmp_path / "out").write_text("mine")
+    for command in (["analyse"], ["export", "--to", "csv"]):
+        said = refused([command[0], tmp_path / "walk_ratio", *command[1:], "--out", tmp_path / "out"], 1, capfd)
+        assert f"{tmp_path / 'out'} is a file; name a folder with --out" in said
+    assert (tmp_path / "out").read_text() == "mine"
+
+
+def test_a_study_file_is_not_suggested_for_its_ending(tmp_path, capfd):
+    (tmp_path / "45_single.yaml").write_text("")
+    assert "Did you mean" not in refused(["check", tmp_path / "nofile.yaml"], 2, capfd)
+    (tmp_path / "my_study.yaml").write_text("")
+    assert f"Did you mean {tmp_path / 'my_study.yaml'}?" in refused(["check", tmp_path / "mystudy.yml"], 2, capfd)

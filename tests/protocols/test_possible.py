@@ -26,7 +26,13 @@ def said(text: str, both_ways: bool = True) -> list[str]:
         ("rating >= 500", "rating >= 500 is never true; rating can be: 1 to 7 in steps of 1"),
         ("rating > 7", "rating > 7 is never true; rating can be: 1 to 7 in steps of 1"),
         ("rating == 3.5", "rating is never 3.5; it can be: 1 to 7 in steps of 1"),
-        ("rating >= high", "rating >= high is never true; rating can be: 1 to 7 in steps of 1"),
+        ("rating >= high", "rating is a number, and high is none; it can be: 1 to 7 in steps of 1"),
+        ("response_time > 30 s", "response_time is a number, and 30 s is none; it can be: 0 or more"),
+        (
+            "rating > 3 or slider > 3",
+            "'rating > 3 or slider > 3' joins conditions by or, which cannot be; "
+            "write one condition, or two exclusions",
+        ),
         ("rating >= 1", "rating >= 1 is true of every trial; rating can be: 1 to 7 in steps of 1"),
         ("slider < 0", "slider < 0 is never true; slider can be: 0 to 100"),
         ("response_time < 0", "response_time < 0 is never true; response_time can be: 0 or more"),

@@ -53,6 +53,15 @@ def place(text: str, sought: str) -> str:
         ("between: [sex]", "between: sex", "sex\n  post_hoc", "'sex' must be a list, as [a, b]; put it into brackets"),
         ("actor: [F1, F2, M1, M2] ", "actor:\n    -F1\n    -F2", "-F1", "- and a space begin each line of one"),
         ("[0.8, 1.0, 1.2]", "[[0.8, 1.0], 1.2]", "[0.8, 1.0], 1.2", "[0.8, 1.0] must be text, or a number, as 1.2"),
+        ("within: [actor, speed, start]", "within: actor, speed", "actor, speed\n", "as [actor, speed]"),
+        ("lower: left", "lower: 1", "1, raise", '1 needs quotes here, as "1"'),
+        ("lower: left", "lower: LEFT", "LEFT", "did you mean left?"),
+        ("title: Ready?", "title: ''", "''", "there is nothing between the quotes; write a text"),
+        ("speed: $speed", "speed: ${speed}", "${speed}", "write the factor's name after the $, as $speed"),
+        ("language: en", "language: deutsch", "deutsch", "'deutsch' is no language; write its code, as en, de"),
+        ("against: {F1: 0.00690", "against: {F1: 6,90", "{F1: 6", "against[90]: 90 must be text"),
+        ("repetitions: 4 ", "1: 4\nrepetitions: 4 ", "1: 4", "a key is a name in letters, as speed"),
+        ("repetitions: 4 ", "true: 4\nrepetitions: 4 ", "true: 4", "a key is a name in letters, as speed"),
         ("[0.8, 1.0, 1.2]", "['0.8', '1.0']", "'0.8'", "takes it from here; take the quotes away"),
         ("minimum_looking_time: 2 ", "minimum_looking_time: -1 ", "-1", "must be at least 0"),
         ("start: $start", "start: $strat", "$strat", "did you mean $start?"),
@@ -137,7 +146,7 @@ def test_a_folder_or_a_misspelt_ending_says_what_to_name(tmp_path):
     (tmp_path / "good.yaml").write_text("study: a\n")
     with pytest.raises(FileNotFoundError, match="is a folder; name a study file in it"):
         find_study(str(tmp_path))
-    with pytest.raises(FileNotFoundError, match=r"Did you mean good.yaml\?"):
+    with pytest.raises(FileNotFoundError, match=r"Did you mean .*good\.yaml\?"):
         find_study(str(tmp_path / "good.yml"))
 
 
