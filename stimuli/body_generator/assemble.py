@@ -50,7 +50,7 @@ LEVELS = 3
 RIM = 0.45  # cm inside cloth up to which the cloth's own normals count
 EDGE_REACH = (1.0, 1.5, 0.0)  # cm from its end within which cloth is brought to a sharp edge; not in crowds
 UNION_SPACING = 1.15  # cm
-HAIR_BUDGETS = (900, 300, 150)  # triangles of the cap
+HAIR_BUDGETS = (800, 300, 150)  # triangles of the cap
 LOCK_SEGMENTS = (4, 2, 0)
 LOCK_SHARE = (1.0, 0.55, 0.0)
 
@@ -63,7 +63,6 @@ class Piece:
     mesh: Mesh
     normals: Floats
     shade: Floats
-    own_weights: bool = True
 
 
 def build(figure: Figure, coarseness: float = 1.0, report: Callable[[str], None] = lambda _: None) -> Body:

@@ -74,7 +74,7 @@ def face_patches(head: Field, frame: HeadFrame, female: bool, fineness: float = 
         here = glint if side > 0 else glint * (1, 1) - (0.36, 0)
         patches.append(_pressed("eye", here, side, 0.08, np.ones((7, 2)), head, frame))
 
-    thick = 0.155 if female else 0.10
+    thick = 0.125 if female else 0.085
     lash_t = np.linspace(0.0, 1.05 if female else 1.0, count(18))
     lash_x = _EYE_FROM + lash_t * (_EYE_TO - _EYE_FROM)
     lid = upper(np.clip(lash_t, 0, 1)) + 0.9 * np.clip(lash_t - 1, 0, 1)

@@ -76,7 +76,7 @@ def clothes(figure: Figure) -> Clothes:
         trouser_cloth,
         _shirt_ends(figure),
         _leg_ends(figure),
-        shirt_seams(figure, running_on),
+        shirt_seams(figure, _banded(figure, running_on), _neckline(figure, 2.05)),
         trouser_seams(figure, trouser_cloth, _leg_ends(figure)),
     )
 

@@ -104,7 +104,7 @@ def _short(skull: Field) -> Style:
         return 1.7 + 3.4 * top, 0.8 + 1.0 * top, 0.07 + 0.06 * top
 
     above = _above_line("short")
-    return Style(cap, cap, flow, 196, shape, lambda p: 0.15 - above(p))
+    return Style(cap, cap, flow, 186, shape, lambda p: 0.15 - above(p))
 
 
 def _cropped(skull: Field) -> Style:
@@ -180,7 +180,7 @@ def _bob(skull: Field) -> Style:
         off_the_face = np.minimum(0.25 - above(p), -0.35 - opening(p))
         return np.maximum(off_the_face, 153.6 - 0.9 * np.clip(p[:, 2] / 6, -1, 1) - p[:, 1])
 
-    return Style(cap, volume, flow, 205, shape, ends)
+    return Style(cap, volume, flow, 195, shape, ends)
 
 
 def _ponytail(skull: Field) -> Style:
@@ -210,7 +210,7 @@ def _ponytail(skull: Field) -> Style:
         return np.where(behind, 7.5, 6.0), np.where(behind, 1.3, 1.1), np.where(behind, 0.22, 0.09)
 
     above = _above_line("ponytail")
-    return Style(cap, cap, flow, 200, shape, lambda p: np.where(p[:, 2] < -11, 146.9 - p[:, 1], 0.15 - above(p)))
+    return Style(cap, cap, flow, 190, shape, lambda p: np.where(p[:, 2] < -11, 146.9 - p[:, 1], 0.15 - above(p)))
 
 
 def cap_field(cut: Style, figure: Figure) -> Field:

@@ -78,7 +78,7 @@ def hand(figure: Figure) -> Field:
             end = tip + k * length * share * direction
             parts.append((capsule(tip, end, r * (1.0, 0.95, 0.9)[i], r * (0.95, 0.9, 0.74)[i]), 0.35 if i else 0.7))
             tip = end
-    thumb = [at(2.2, 2.9, 0.9), at(5.6, 4.9, 1.9), at(8.5, 5.7, 2.4), at(10.8, 5.75, 2.75)]
+    thumb = [at(2.2, 2.9, 0.9), at(5.5, 4.4, 2.0), at(8.3, 4.8, 2.9), at(10.5, 4.5, 3.5)]
     for i in range(3):
         radius = (1.25, 1.02, 0.9)[i] * k * slim
         parts.append((capsule(thumb[i], thumb[i + 1], radius, radius * 0.86), 1.3 if i == 0 else 0.4))

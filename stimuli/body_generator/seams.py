@@ -18,18 +18,18 @@ from stimuli.body_generator.polygons import Mesh, settled
 from stimuli.skeleton import Floats
 
 WIDTH = 0.28  # cm
-LIFT = 0.13  # cm above the cloth
+LIFT = 0.08  # cm above the cloth
 DARK = 0.52  # of the light that the cloth beside it gets
 STEP = 0.5  # cm between points of a line before those that lie straight are dropped
-STRAIGHT = 0.045  # cm
+STRAIGHT = 0.035  # cm
 _CANDIDATES = 16  # triangles near a point that it may lie on
 
 Line = Floats
 """(N, 3) cm, points of a seam."""
 
 
-def shirt_seams(figure: Figure, cloth: Field) -> tuple[Line, ...]:
-    """Armholes, the stitches of hem and sleeves, and the shoulder seams, of a T-shirt."""
+def shirt_seams(figure: Figure, cloth: Field, collar: Field) -> tuple[Line, ...]:
+    """Armholes, stitches of hem and sleeves, and the lower edge of the collar's band (`collar` = 0) of a T-shirt."""
     x, y, _ = figure.shoulder
     hem, end = figure.shirt[0][0] + 2.2, figure.sleeve[-1][0] - 1.9
     thick = 0.82 if figure.female else 1.0
@@ -47,7 +47,10 @@ def shirt_seams(figure: Figure, cloth: Field) -> tuple[Line, ...]:
     turn = np.linspace(0, 2 * np.pi, 90)[:, None]
     sleeve = cuff + 6.2 * thick * (np.cos(turn) * across + np.sin(turn) * np.array([0.0, 0, 1]))
     waist = np.column_stack([17.5 * np.cos(turn), np.full(len(turn), hem), 12.5 * np.sin(turn)])
-    lines = [waist, *_both(sleeve), *_both(_through(armhole))]
+    neck = np.column_stack([9 * np.sin(turn), np.full(len(turn), figure.neck[1] - 3), 9 * np.cos(turn) - 2])
+    for _ in range(12):
+        neck = settled(collar, _on(cloth, neck), 2.0)
+    lines = [waist, neck, *_both(sleeve), *_both(_through(armhole))]
     return tuple(_on(cloth, line) for line in lines)
 
 
