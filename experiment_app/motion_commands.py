@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json as json_format
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -205,7 +206,7 @@ def import_actor(
         def told(done: int, of: int) -> None:
             bar.update(task, completed=done, total=of)
 
-        actor = import_folder(folder, name, replace=replace, told=told)
+        actor = import_folder(folder, name, replace=replace, told=told, at_once=min(os.cpu_count() or 1, 8))
     out.print(f"{name}: {actor.provenance}", markup=False)
     for frequency, row in actor.rows:
         places = "  ".join(f"{cycle.speed:.2f}{'' if cycle.files else ' (modelled)'}" for cycle in row)

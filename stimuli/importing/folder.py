@@ -37,15 +37,16 @@ def import_folder(
     replace: bool = False,
     complete: bool | None = None,
     told: Callable[[int, int], None] | None = None,
+    at_once: int = 1,
 ) -> StoredActor:
     """Imports the captures of a folder as the actor `name` and stores it; returns what was stored.
 
-    complete: overrides what actor.yaml says; told: called with the number of files read so far and of all. Raises
-    MotionFileError or ActorError; then nothing was stored.
+    complete: overrides what actor.yaml says; told: called with the number of files read so far and of all;
+    at_once: how many are read at the same time. Raises MotionFileError or ActorError; then nothing was stored.
     """
     check_name(name, library, replace)
     description = read_description(folder)
-    walks = read_walks(folder, told)
+    walks = read_walks(folder, told, at_once)
     check_height(walks, description.height, folder)
     actor = _actor(name, description, walks, description.complete if complete is None else complete)
     _check_delivery(actor, folder)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,6 +22,9 @@ from stimuli.skeleton import Floats
 
 LONGEST = 120.0
 """s: a longer recording is no walk down a walkway."""
+
+WORTH_PROCESSES = 12
+"""Files from which it is worth starting processes, which takes half a second."""
 
 SPEEDS = (0.3, 2.6)
 """m/s, from a shuffle to the walk-run transition at its latest (2.1 m/s on average, Hreljac 1995)."""
@@ -72,11 +75,11 @@ class CapturedWalk:
         return self.names == "markers"
 
 
-def read_walks(folder: Path, told: Callable[[int, int], None] | None = None) -> list[CapturedWalk]:
+def read_walks(folder: Path, told: Callable[[int, int], None] | None = None, at_once: int = 1) -> list[CapturedWalk]:
     """The captured walk of every motion file in a folder, in order of name.
 
-    told: called with the number of files read so far and of all. Raises MotionFileError naming the first file that
-    makes no walk, or two files of two people.
+    told: called with the number of files read so far and of all; at_once: how many are read at the same time, each in a
+    process of its own. Raises MotionFileError naming the first file that makes no walk, or two files of two people.
     """
     if not folder.is_dir():
         raise ImportingError(f"{folder} is no folder; give the folder that holds the clips and actor.yaml")
@@ -84,12 +87,27 @@ def read_walks(folder: Path, told: Callable[[int, int], None] | None = None) -> 
     if not paths:
         raise ImportingError(f"{folder} holds no motion file; they end in {', '.join(ENDINGS)}")
     walks: list[CapturedWalk] = []
-    for path in paths:
-        walks.append(read_walk(path))
+    for walk in _read(paths, at_once):
+        walks.append(walk)
         if told is not None:
             told(len(walks), len(paths))
     _check_one_person(walks, folder)
     return walks
+
+
+def _read(paths: list[Path], at_once: int) -> Iterator[CapturedWalk]:
+    """The walks in order. Processes are started anew, not forked, so that no thread's lock is copied with them."""
+    if at_once < 2 or len(paths) < WORTH_PROCESSES:
+        yield from map(read_walk, paths)
+        return
+    import multiprocessing
+    import signal
+    from concurrent.futures import ProcessPoolExecutor
+
+    context = multiprocessing.get_context("spawn")
+    quietly = (signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is for the command, which then ends them
+    with ProcessPoolExecutor(at_once, context, initializer=signal.signal, initargs=quietly) as pool:
+        yield from pool.map(read_walk, paths)
 
 
 def read_walk(path: Path, rest: RestPose | None = None) -> CapturedWalk:

@@ -16,7 +16,7 @@ from stimuli.importing.clip_report import clip_lines, clip_report
 from stimuli.importing.description import read_description
 from stimuli.importing.errors import ImportingError
 from stimuli.importing.folder import import_folder
-from stimuli.importing.walks import read_walk
+from stimuli.importing.walks import read_walk, read_walks
 from stimuli.measure import delivered_gait
 from stimuli.motion_files.errors import MotionFileError
 
@@ -416,3 +416,20 @@ def test_an_unlikely_height_is_noted_and_a_likely_one_is_not(tmp_path):
     assert not any("tall" in note for note in likely.notes)
     unlikely = import_folder(captured(tmp_path / "b", "07_10", height=1.52), "unlikely", tmp_path / "library")
     assert any("rather those of somebody 1.64 m tall than 1.52 m" in note for note in unlikely.notes)
+
+
+@needs_captures
+def test_clips_read_several_at_once_are_the_same_in_the_same_order(tmp_path):
+    folder = captured(tmp_path / "in", "07_01", "07_03", "07_10")
+    for copy in range(4):
+        for name in ("07_01", "07_03", "07_10"):
+            shutil.copyfile(CMU / f"cmu_{name}.bvh", folder / f"cmu_{name}_{copy}.bvh")
+    told: list[int] = []
+    alone, together = read_walks(folder), read_walks(folder, lambda done, of: told.append(done), at_once=2)
+    assert [walk.file for walk in together] == [walk.file for walk in alone]
+    assert told == list(range(1, len(alone) + 1))
+    for one, other in zip(alone, together, strict=True):
+        np.testing.assert_array_equal(one.curves.sides, other.curves.sides)
+    (folder / "cmu_07_03_2.bvh").write_text("no motion", encoding="utf-8")
+    with pytest.raises(MotionFileError, match=r"cmu_07_03_2\.bvh"):
+        read_walks(folder, at_once=2)
