@@ -140,8 +140,9 @@ def styled(actor: Actor, name: str) -> Actor:
     Raises MethodError for a style that is not known.
     """
     style = style_named(name)
+    captured = actor.name in imported_names() or name in imported_styles()
     cycles = [
-        walk_cycle(actor.figure, style.applied(walk), speed, frequency)
+        walk_cycle(actor.figure, style.applied(walk), speed, frequency, calm=captured)
         for walk, speed, frequency in _ingredients(actor)
     ]
     return replace(
