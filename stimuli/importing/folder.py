@@ -56,7 +56,7 @@ def import_folder(
 
 def _actor(name: str, description: Description, walks: list[CapturedWalk], complete: bool) -> StoredActor:
     comfort = description.comfort_speed or float(np.median([walk.gait.speed for walk in walks]))
-    nearest = min(walks, key=lambda walk: abs(walk.gait.speed - comfort))
+    nearest = min(walks, key=lambda walk: (round(abs(walk.gait.speed - comfort), 2), walk.gait.speed))  # m/s
     person = Person(
         name=name,
         sex=description.sex,

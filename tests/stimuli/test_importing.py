@@ -433,3 +433,12 @@ def test_clips_read_several_at_once_are_the_same_in_the_same_order(tmp_path):
     (folder / "cmu_07_03_2.bvh").write_text("no motion", encoding="utf-8")
     with pytest.raises(MotionFileError, match=r"cmu_07_03_2\.bvh"):
         read_walks(folder, at_once=2)
+
+
+@needs_captures
+def test_of_two_clips_equally_near_to_the_comfortable_speed_the_slower_gives_the_walk_ratio(tmp_path):
+    """Two clips lie equally far from their median: the last digit of a measure must not choose the walk ratio."""
+    for names in (("07_01", "07_10"), ("07_03", "07_10"), ("16_15", "16_21")):
+        folder = tmp_path / "-".join(names)
+        actor = import_folder(captured(folder, *names, height=1.68), "two", tmp_path / "library", replace=True)
+        assert actor.person.walk_ratio_source == f"captured, cmu_{names[0]}.bvh"
