@@ -125,7 +125,9 @@ def what_participant_sees(study: Study, number: int, seed: int | None = None) ->
     lines.append(f"  keys: {', '.join(f'{name} {key}' for name, key in study.task.keys_for(number).items())}")
     placed = study.order.placed_factor
     if placed:
-        lines.append(f"  {placed} is placed by the answers, so only the rest is known beforehand")
+        stops = study.order.stops_after if isinstance(study.order, AdaptiveOrder) else None
+        over = f"; a track's trials after its {stops} reversals are passed over" if stops is not None else ""
+        lines.append(f"  {placed} is placed by the answers, so only the rest is known beforehand{over}")
     blocks = {step.trial.block for step in plan.steps if isinstance(step, TrialStep) and not step.trial.practice}
     block = 0
     for step in plan.steps:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from analysis.errors import AnalysisError
+from analysis.recorded.copies import without_copies
 from analysis.recorded.journal import journals_of, read_records
 
 SAFETY = 1.0
@@ -84,9 +85,11 @@ def read_runs(folder: Path) -> tuple[list[ExportedRun], list[str]]:
 
     Raises AnalysisError when there is none, when a journal is damaged, or when runs of different kinds are mixed.
     """
-    runs, left_out = [], []
-    for path in journals_of(folder):
-        run = _read(path, path.relative_to(folder).as_posix())
+    every = [_read(path, path.relative_to(folder).as_posix()) for path in journals_of(folder)]
+    every, copies, left_out = without_copies(every)
+    left_out += [f"{run.participant}: {why}." for run, why in copies]
+    runs = []
+    for run in every:
         declined = any(t.record.get("agreed") is False for t in run.of("consent"))
         if declined:
             left_out.append(f"{run.participant}: did not consent; nothing was exported.")

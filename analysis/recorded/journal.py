@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from analysis.errors import AnalysisError, listed
+from analysis.recorded.copies import without_copies
 
 if TYPE_CHECKING:
     from protocols.journal_text import JournalText
@@ -131,14 +132,17 @@ def read_study(folder: Path, unfinished: bool = False) -> RecordedStudy:
     unfinished: also take runs that were begun but not finished.
     """
     paths = journals_of(folder)
-    digest, warnings, left_out, runs = hashlib.sha256(), [], [], []
+    digest, every = hashlib.sha256(), []
     for path in paths:
         name = path.relative_to(folder).as_posix()
         digest.update(f"{name}\n{path.stat().st_size}\n".encode())
         digest.update(path.read_bytes())
-        run = read_journal(path, name)
+        every.append(read_journal(path, name))
+    every, copies, warnings = without_copies(every)
+    left_out, runs = [(run.participant, why) for run, why in copies], []
+    for run in every:
         if run.torn:
-            warnings.append(f"{name}: the last line was cut off while being written and was skipped.")
+            warnings.append(f"{run.name}: the last line was cut off while being written and was skipped.")
         if run.repeated:
             warnings.append(
                 f"{run.participant}: trial(s) {listed(run.repeated)} were recorded more than once; "

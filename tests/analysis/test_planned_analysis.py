@@ -254,7 +254,7 @@ def test_missing_folders_and_empty_ones(tmp_path: Path) -> None:
 def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
     folder = write_study(tmp_path / "s", 4)
     (tmp_path / "out").write_text("a file, not a folder")
-    with pytest.raises(AnalysisError, match="cannot be written"):
+    with pytest.raises(AnalysisError, match="is a file; name a folder"):
         analyse(folder, tmp_path / "out")
 
 

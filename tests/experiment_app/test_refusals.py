@@ -1,9 +1,11 @@
 """What a careless hand gets: one sentence with the place and the way out, the right status, nothing overwritten."""
 
+import shutil
 from fractions import Fraction
 
 import pytest
 
+from analysis.recorded.journal import read_study
 from experiment_app.command import run
 from experiment_app.errors import UsageError
 from experiment_app.film import write_film
@@ -155,3 +157,28 @@ def test_a_study_file_is_not_suggested_for_its_ending(tmp_path, capfd):
     assert "Did you mean" not in refused(["check", tmp_path / "nofile.yaml"], 2, capfd)
     (tmp_path / "my_study.yaml").write_text("")
     assert f"Did you mean {tmp_path / 'my_study.yaml'}?" in refused(["check", tmp_path / "mystudy.yml"], 2, capfd)
+
+
+@pytest.mark.parametrize("copy", ["sub-P09", "sub-P01/run-1 copy", "sub-A01"])
+def test_a_copied_participant_counts_once_and_the_copy_is_named(tmp_path, capfd, copy):
+    play(opened(tmp_path))
+    study = tmp_path / "walk_ratio"
+    there = study / "sourcedata" / ("sub-P01" if "/" not in copy else "sub-P01/run-1")
+    shutil.copytree(there, study / "sourcedata" / copy)
+    once = f"P01: run 1 stands twice; the copy in {copy if '/' in copy else copy + '/run-1'} is left out"
+    assert run(["export", str(study), "--to", "csv", "--out", str(tmp_path / "csv")]) == 0
+    told = " ".join(capfd.readouterr())
+    assert once in told
+    assert "1 participants, 1 runs" in told
+    recorded = read_study(study)
+    assert [one.participant for one in recorded.runs] == ["P01"]
+    assert [f"{who}: {why}" for who, why in recorded.left_out] == [once]
+
+
+def test_a_renamed_participant_counts_by_the_journal_and_is_named(tmp_path):
+    play(opened(tmp_path))
+    folder = tmp_path / "walk_ratio" / "sourcedata"
+    (folder / "sub-P01").rename(folder / "sub-P1b")
+    recorded = read_study(tmp_path / "walk_ratio")
+    assert [one.participant for one in recorded.runs] == ["P01"]
+    assert "sub-P1b/run-1 holds run 1 of participant P01; it counts as that." in recorded.warnings
