@@ -44,9 +44,9 @@ def import_file(
     replace: Annotated[bool, Parameter(negative="", help="Replace an imported body of this name.")] = False,
 ) -> int:
     """Check a character and keep it in the library of bodies (GAITLAB_BODIES), under a name for study files."""
+    from stimuli.bodies.library import stored
     from stimuli.body_files.container import open_container
     from stimuli.body_files.packing import packed
-    from stimuli.body_library import stored
 
     report = body_report(file)
     path = stored(packed(open_container(file), file), name, replace)
@@ -59,9 +59,9 @@ def import_file(
 @body_commands.command(name="list")
 def list_bodies() -> int:
     """List every name that a study's `body` can have."""
-    from stimuli.bodies import haircut_names, load_body, shipped_names, variant_names
-    from stimuli.body_library import MATCHED, MISMATCHED, OWN_BUILD, imported_names
-    from stimuli.point_light import FIGURES
+    from stimuli.bodies.known import haircut_names, load_body, shipped_names, variant_names
+    from stimuli.bodies.library import MATCHED, MISMATCHED, OWN_BUILD, imported_names
+    from stimuli.bodies.point_light import FIGURES
 
     ours = (*shipped_names(), *haircut_names(), *variant_names())
     for name in (*ours, *imported_names()):
@@ -82,9 +82,9 @@ def body_report(file: Path) -> dict[str, Any]:
     import numpy as np
 
     from stimuli.actors import load_actor
-    from stimuli.bodies import scaled
+    from stimuli.bodies.known import scaled
+    from stimuli.bodies.retarget import on_its_own_soles, sole_gaps
     from stimuli.body_files.imported import bounding_box, import_and_explain
-    from stimuli.body_retarget import on_its_own_soles, sole_gaps
     from stimuli.skeleton import JOINTS
 
     if not file.exists():
@@ -158,9 +158,9 @@ def draw_check(file: Path, path: Path) -> None:
     from experiment_app.scene import Camera, Scene, View, Walker
     from experiment_app.windows.offscreen import offscreen_context
     from stimuli.actors import load_actor
-    from stimuli.bodies import scaled
+    from stimuli.bodies.known import scaled
+    from stimuli.bodies.retarget import on_its_own_soles
     from stimuli.body_files.imported import import_body
-    from stimuli.body_retarget import on_its_own_soles
     from stimuli.walker import drawn_pose, skin_matrices
 
     body = import_body(file)

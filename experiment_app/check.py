@@ -44,7 +44,7 @@ def refuse_mistakes(file: StudyFile, mistakes: Sequence[Mistake]) -> None:
 def check_names(file: StudyFile) -> list[Mistake]:
     """Actors, bodies and styles that do not exist."""
     from stimuli.actors import actor_names
-    from stimuli.bodies import body_names
+    from stimuli.bodies.known import body_names
     from stimuli.methods.styles import style_names
 
     known = {"actor": actor_names(), "body": body_names(), "style": style_names()}

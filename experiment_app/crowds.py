@@ -10,12 +10,12 @@ import numpy as np
 from experiment_app.render.drawn import CrowdLook, DrawnCrowd
 from experiment_app.scene import STREET_HALF_WIDTH, Crowd, Palette
 from stimuli.blend_tree import Leaf
-from stimuli.crowd_bodies import crowd_body
-from stimuli.crowd_looks import Look, linear_rgb, looks
-from stimuli.crowd_motions import SEXES, figure_of, motion_of
-from stimuli.crowd_plan import CrowdPlan, plan_crowd
-from stimuli.crowd_posing import poser
-from stimuli.crowd_table import Mix, WalkTable, mixed
+from stimuli.crowds.bodies import crowd_body
+from stimuli.crowds.looks import Look, linear_rgb, looks
+from stimuli.crowds.motions import SEXES, figure_of, motion_of
+from stimuli.crowds.plan import CrowdPlan, plan_crowd
+from stimuli.crowds.posing import poser
+from stimuli.crowds.table import Mix, WalkTable, mixed
 from stimuli.skeleton import Floats
 
 STRETCH = 110.0  # m that a crowd walks along before it comes in again, where that is long enough for so many

@@ -18,11 +18,11 @@ from experiment_app.scene import Camera, Crowd, Marks, Scene, View, Walker
 from experiment_app.walkers import drawn_walkers, walk_of
 from experiment_app.windows.offscreen import offscreen_context
 from protocols.study_file import read_study, shipped_studies
-from stimuli.bodies import shipped_names
-from stimuli.body_library import imported_names
+from stimuli.bodies.known import shipped_names
+from stimuli.bodies.library import imported_names
+from stimuli.bodies.point_light import FIGURES
 from stimuli.methods.recipe import Making
 from stimuli.methods.styles import default_styles
-from stimuli.point_light import FIGURES
 from stimuli.skeleton import JOINTS
 
 Pixels = NDArray[np.uint8]

@@ -13,16 +13,16 @@ from experiment_app.crowds import drawn_crowd, measured_crowd
 from experiment_app.render.drawn import Drawn, DrawnCrowd, DrawnWalker
 from experiment_app.scene import Scene, Walker
 from stimuli.actors import Actor, load_actor
-from stimuli.bodies import body_for, comes_with_gaitlab, in_the_build_of, load_body, scaled
-from stimuli.body import Body
-from stimuli.body_library import OWN_BUILD
-from stimuli.body_retarget import on_its_own_soles
+from stimuli.bodies.body import Body
+from stimuli.bodies.known import body_for, comes_with_gaitlab, in_the_build_of, load_body, scaled
+from stimuli.bodies.library import OWN_BUILD
+from stimuli.bodies.point_light import FIGURES, figure_lines, resting
+from stimuli.bodies.retarget import on_its_own_soles
 from stimuli.measure import delivered_gait
 from stimuli.methods.actor_walks import natural_step_frequency
 from stimuli.methods.delivery import delivered
 from stimuli.methods.made import MadeWalk, made_walk
 from stimuli.methods.recipe import Making
-from stimuli.point_light import FIGURES, figure_lines, resting
 from stimuli.skeleton import Floats
 from stimuli.walker import drawn_pose, skin_matrices
 

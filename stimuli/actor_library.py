@@ -21,8 +21,8 @@ import numpy as np
 from stimuli.actors import Actor, ActorError, Person, people
 from stimuli.blend import CycleTable
 from stimuli.blend_tree import Branch, Leaf, Tree
-from stimuli.bodies import load_body
-from stimuli.body import Body
+from stimuli.bodies.body import Body
+from stimuli.bodies.known import load_body
 from stimuli.gait import Gait
 from stimuli.gait_model import COEFFICIENTS, SIGNALS, WalkCurves
 from stimuli.retarget import Figure, scaled, walk_cycle

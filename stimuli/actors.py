@@ -20,8 +20,8 @@ import numpy as np
 
 from stimuli.blend import CycleTable, WalkCycle
 from stimuli.blend_tree import Branch, Leaf, Tree
-from stimuli.bodies import load_body
-from stimuli.body import Body
+from stimuli.bodies.body import Body
+from stimuli.bodies.known import load_body
 from stimuli.gait_model import SIGNALS, GaitModel, Step, WalkCurves, load_gait_model
 from stimuli.retarget import Figure, scaled, walk_cycle
 from stimuli.skeleton import Floats, Skeleton

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from stimuli.actors import Actor
-from stimuli.contact import Sole
 from stimuli.kinematics import world_matrices
+from stimuli.legs.contact import Sole
 from stimuli.skeleton import JOINTS, Floats, Pose, Skeleton
 from stimuli.walker import drawn_pose
 

@@ -15,13 +15,13 @@ from functools import cached_property
 import numpy as np
 
 from stimuli.blend import UPPER, WalkCycle
-from stimuli.contact import Sole
-from stimuli.foot_channels import foot_channels
-from stimuli.foot_paths import PHASES
 from stimuli.gait_model import MODEL_ARM, WalkCurves, curves
 from stimuli.kinematics import rotation_matrices
-from stimuli.leg_paths import LegPath, carried_hips, leg_path
-from stimuli.legs import Leg
+from stimuli.legs.contact import Sole
+from stimuli.legs.foot_channels import foot_channels
+from stimuli.legs.foot_paths import PHASES
+from stimuli.legs.leg_paths import LegPath, carried_hips, leg_path
+from stimuli.legs.two_bone import Leg
 from stimuli.rotations import from_exponential, inverse, multiply, shortest_arc
 from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
 
@@ -70,7 +70,7 @@ def walk_cycle(figure: Figure, walk: WalkCurves, speed: float, step_frequency: f
     """One cycle of a walk at exactly this speed (m/s) and step frequency (steps/min).
 
     Both legs are made like a right leg, the left one as seen in a mirror; where it is the right one's image half a
-    cycle later, once. calm: takes out the twitches of legs that come from captures (stimuli/swing.py).
+    cycle later, once. calm: takes out the twitches of legs that come from captures (stimuli/legs/swing.py).
     """
     stride = 120.0 * speed / step_frequency
     leg = figure.legs[1]

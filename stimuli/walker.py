@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stimuli import contact
 from stimuli.blend import SIDES, UPPER, blend_body, blend_foot
 from stimuli.blend_tree import blend_weights
-from stimuli.contact import Sole
 from stimuli.kinematics import rotation_matrices, skinning_matrices
 from stimuli.kinematics import world_joints as world_joints
-from stimuli.legs import STRAIGHTEST, Leg, solve
+from stimuli.legs import contact
+from stimuli.legs.contact import Sole
+from stimuli.legs.two_bone import STRAIGHTEST, Leg, solve
 from stimuli.rotations import from_matrix
 from stimuli.skeleton import JOINTS, Floats, Pose
 

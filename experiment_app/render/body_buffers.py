@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiment_app.render.pictures import covers, has_pictures, layers
-from stimuli.body import Body, Surface
+from stimuli.bodies.body import Body, Surface
 
 VERTEX = np.dtype(
     [

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiment_app.render.drawn import CrowdLook, DrawnCrowd, DrawnWalker
-from stimuli.body import Body
+from stimuli.bodies.body import Body
 from stimuli.skeleton import JOINTS, Floats
 
 BALLS: tuple[tuple[str, tuple[float, float, float], float], ...] = (

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stimuli.body import Body
+from stimuli.bodies.body import Body
 from stimuli.skeleton import Floats
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from stimuli.body import Surface
+from stimuli.bodies.body import Surface
 
 LARGEST = 2048  # pixels; larger pictures are made smaller
 MODES = {"opaque": 0.0, "mask": 1.0, "blend": 2.0}

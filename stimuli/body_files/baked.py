@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from stimuli.body import Body, Surface
+from stimuli.bodies.body import Body, Surface
 from stimuli.body_files.accessors import item, read_accessor
 from stimuli.body_files.container import Container, read_container
 from stimuli.body_files.errors import BodyError

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stimuli.body import Body, Surface
+from stimuli.bodies.body import Body, Surface
 from stimuli.body_files.container import Container, write_container
 from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stimuli.body import Body, Integers, Surface
+from stimuli.bodies.body import Body, Integers, Surface
 from stimuli.body_files.container import Container, open_container
 from stimuli.body_files.errors import BodyError
 from stimuli.body_files.humanoid import Humanoid, bind_matrices, understand

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from stimuli.body import Integers
+from stimuli.bodies.body import Integers
 from stimuli.body_files.accessors import Array, item, read_accessor
 from stimuli.body_files.container import Container
 from stimuli.body_files.errors import BodyError

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stimuli.body import Body, Integers, Surface
+from stimuli.bodies.body import Body, Integers, Surface
 from stimuli.body_generator.face import face_patches
 from stimuli.body_generator.fields import Field
 from stimuli.body_generator.figure import Figure

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from stimuli.bodies import hair_names, load_body
-from stimuli.body import Surface
-from stimuli.crowd_bodies import KEPT, LEVELS
+from stimuli.bodies.body import Surface
+from stimuli.bodies.known import hair_names, load_body
+from stimuli.crowds.bodies import KEPT, LEVELS
 from stimuli.skeleton import JOINTS, Floats
 
 SHARES = ((0.33, 3), (0.14, 2), (0.07, 2))

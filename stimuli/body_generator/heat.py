@@ -13,7 +13,7 @@ from scipy.sparse import coo_matrix, csc_matrix, diags
 from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
-from stimuli.body import Integers
+from stimuli.bodies.body import Integers
 from stimuli.body_generator.polygons import Mesh
 from stimuli.skeleton import JOINTS, Floats
 

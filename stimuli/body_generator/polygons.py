@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix
 
-from stimuli.body import Integers
+from stimuli.bodies.body import Integers
 from stimuli.body_generator.fields import Field
 from stimuli.skeleton import Floats
 

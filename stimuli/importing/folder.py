@@ -10,7 +10,7 @@ import numpy as np
 from stimuli.actor_library import StoredActor, StoredCycle, actor_of, check_name, stored
 from stimuli.actors import Person
 from stimuli.blend_tree import CoverageError
-from stimuli.bodies import load_body
+from stimuli.bodies.known import load_body
 from stimuli.gait import Gait
 from stimuli.gait_model import SIGNALS
 from stimuli.importing.arrangement import ArrangedCycle, arrange

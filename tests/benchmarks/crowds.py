@@ -30,8 +30,8 @@ from experiment_app.render.shadow_map import ShadowMap
 from experiment_app.scene import Camera, Crowd, Ground, Scene, Walker
 from experiment_app.walkers import drawn_walkers
 from experiment_app.windows.offscreen import offscreen_context
-from stimuli.crowd_poses import many_matrices
-from stimuli.crowd_posing import accelerated
+from stimuli.crowds.poses import many_matrices
+from stimuli.crowds.posing import accelerated
 from tests.benchmarks.measuring import fastest, row
 
 SIZES = (1, 100, 250, 500, 1000)

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from stimuli import crowd_poses, crowd_posing
 from stimuli.actors import load_actor
-from stimuli.crowd_table import WalkTable, mixed
+from stimuli.crowds import poses as crowd_poses
+from stimuli.crowds import posing as crowd_posing
+from stimuli.crowds.table import WalkTable, mixed
 from stimuli.walker import drawn_pose, skin_matrices
 from tests.benchmarks.measuring import fastest, row
 
@@ -37,7 +38,7 @@ def poses() -> None:
     if not crowd_posing.accelerated():
         print("numba is not installed (extra `fast`), so its figures are left out")
         return
-    from stimuli import crowd_poses_compiled
+    from stimuli.crowds import compiled_poses as crowd_poses_compiled
 
     compiled = fastest(lambda: crowd_poses_compiled.many_matrices(mix, phases, out), 9, 20) / WALKERS
     row("one of 1000 walkers' poses, numba, one thread", compiled, 1.5e-6)

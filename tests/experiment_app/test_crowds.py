@@ -17,7 +17,7 @@ from experiment_app.windows.offscreen import offscreen_context
 from protocols.study_file import read_study
 from stimuli.actors import load_actor
 from stimuli.blend_tree import Leaf
-from stimuli.crowd_motions import figure_of, motion_of
+from stimuli.crowds.motions import figure_of, motion_of
 from stimuli.walker import drawn_pose, skin_matrices
 
 SIZE = (320, 180)

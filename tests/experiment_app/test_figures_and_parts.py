@@ -18,8 +18,8 @@ from experiment_app.render.part_map import part_of
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Camera, Marks, Scene, Walker
 from experiment_app.walkers import cast, drawn_walkers
+from stimuli.bodies.skinning import skin
 from stimuli.skeleton import JOINTS
-from stimuli.skinning import skin
 
 SIZE = (256, 288)
 WALKER = Walker("F1", 1.2, 105.0, 0.3, distance=4.7)

@@ -13,7 +13,7 @@ from experiment_app.render.renderer import Renderer
 from experiment_app.render.treadmill_pass import corners
 from experiment_app.scene import Camera, Ground, Scene, View, Walker
 from experiment_app.walkers import cast, drawn_walkers
-from stimuli.skinning import skin
+from stimuli.bodies.skinning import skin
 from tests.experiment_app.drawing import picture
 
 SIZE = (320, 180)

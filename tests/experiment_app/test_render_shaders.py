@@ -15,7 +15,7 @@ from experiment_app.render.programs import shader_text
 from experiment_app.render.treadmill_model import BELT_WIDTH, FLOOR, treadmill
 from experiment_app.scene import Scene, Walker
 from experiment_app.walkers import drawn_walkers
-from stimuli.skinning import skin
+from stimuli.bodies.skinning import skin
 
 CAPTURE = """
 in vec4 normal_sky;

@@ -9,7 +9,7 @@ import pytest
 
 from stimuli.actors import ActorError, actor_names, load_actor
 from stimuli.blend_tree import coverage
-from stimuli.bodies import load_body
+from stimuli.bodies.known import load_body
 
 SHARED = Path(__file__).parents[2].parent / "shared"
 

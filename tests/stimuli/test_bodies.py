@@ -8,7 +8,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from stimuli.actors import load_actor
-from stimuli.bodies import (
+from stimuli.bodies.builds import AVERAGE, girths_of
+from stimuli.bodies.known import (
     SLIMMEST,
     BodyError,
     body_for,
@@ -22,11 +23,10 @@ from stimuli.bodies import (
     variant_names,
     with_girths,
 )
+from stimuli.bodies.skinning import skin
 from stimuli.body_files.baked import read_baked
-from stimuli.builds import AVERAGE, girths_of
 from stimuli.measure import poses
 from stimuli.skeleton import JOINTS, PARENTS
-from stimuli.skinning import skin
 
 NAMES = shipped_names()
 MIRROR = np.array(

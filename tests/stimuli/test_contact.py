@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stimuli import contact
-from stimuli.contact import Sole
+from stimuli.legs import contact
+from stimuli.legs.contact import Sole
 
 SOLE = Sole(ankle_height=0.085, heel=0.055, ball=0.135, ball_height=0.024, tip=0.195)
 

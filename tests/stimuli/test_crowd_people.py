@@ -7,12 +7,12 @@ import pytest
 
 from stimuli.actors import load_actor
 from stimuli.blend_tree import Leaf
-from stimuli.bodies import load_body
+from stimuli.bodies.builds import GIRTHS
+from stimuli.bodies.known import load_body
 from stimuli.body_generator.crowd_levels import SMALL, coarse_levels
-from stimuli.builds import GIRTHS
-from stimuli.crowd_bodies import KEPT, crowd_body
-from stimuli.crowd_looks import LOOKS, difference, farthest, linear_rgb, looks
-from stimuli.crowd_motions import Style, drawn_manner, figure_of, least_distinctive, motion_of
+from stimuli.crowds.bodies import KEPT, crowd_body
+from stimuli.crowds.looks import LOOKS, difference, farthest, linear_rgb, looks
+from stimuli.crowds.motions import Style, drawn_manner, figure_of, least_distinctive, motion_of
 from stimuli.gait_model import load_gait_model
 from stimuli.measure import delivered_gait
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from stimuli.crowd_motions import LONGEST, SHORTEST, Style, motion_of
-from stimuli.crowd_plan import LANE, NEAREST, SWERVE, CrowdError, motions_per_sex, plan_crowd
+from stimuli.crowds.motions import LONGEST, SHORTEST, Style, motion_of
+from stimuli.crowds.plan import LANE, NEAREST, SWERVE, CrowdError, motions_per_sex, plan_crowd
 
 WIDTH, LENGTH = 18.0, 110.0
 APART = 0.55

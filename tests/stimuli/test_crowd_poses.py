@@ -8,13 +8,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stimuli import crowd_poses, crowd_posing
 from stimuli.actors import load_actor
 from stimuli.blend_tree import Branch, CoverageError, Leaf, blend_weights, many_weights
-from stimuli.bodies import load_body, scaled
-from stimuli.body_retarget import on_its_own_soles
-from stimuli.contact import Sole
-from stimuli.crowd_table import WalkTable, mixed
+from stimuli.bodies.known import load_body, scaled
+from stimuli.bodies.retarget import on_its_own_soles
+from stimuli.crowds import poses as crowd_poses
+from stimuli.crowds import posing as crowd_posing
+from stimuli.crowds.table import WalkTable, mixed
+from stimuli.legs.contact import Sole
 from stimuli.retarget import Figure
 from stimuli.walker import drawn_pose, skin_matrices
 
@@ -35,7 +36,7 @@ ways = pytest.mark.parametrize(
 def many_matrices(way):
     if way == "planes":
         return crowd_poses.many_matrices
-    from stimuli import crowd_poses_compiled
+    from stimuli.crowds import compiled_poses as crowd_poses_compiled
 
     return crowd_poses_compiled.many_matrices
 

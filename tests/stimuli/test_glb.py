@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stimuli.bodies import load_body
-from stimuli.body import Body, Surface
+from stimuli.bodies.body import Body, Surface
+from stimuli.bodies.known import load_body
 from stimuli.body_files.accessors import read_accessor
 from stimuli.body_files.baked import read_baked
 from stimuli.body_files.baking import bake

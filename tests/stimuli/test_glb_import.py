@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stimuli.bodies import load_body
+from stimuli.bodies.known import load_body
 from stimuli.body_files.animation import Channel, moved_nodes, read_animations, value_at
 from stimuli.body_files.container import Container, open_container, read_container, write_container
 from stimuli.body_files.errors import BodyError

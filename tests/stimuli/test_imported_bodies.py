@@ -11,13 +11,13 @@ import pytest
 from PIL import Image
 
 from stimuli.actors import load_actor
-from stimuli.bodies import body_names, load_body, scaled
+from stimuli.bodies.known import body_names, load_body, scaled
+from stimuli.bodies.library import imported_names, stored
+from stimuli.bodies.retarget import on_its_own_soles, sole_gaps
 from stimuli.body_files.container import Container, open_container, read_container, write_container
 from stimuli.body_files.errors import BodyError
 from stimuli.body_files.imported import import_and_explain, import_body
 from stimuli.body_files.packing import packed
-from stimuli.body_library import imported_names, stored
-from stimuli.body_retarget import on_its_own_soles, sole_gaps
 
 MAN = files("stimuli").joinpath("data", "bodies", "man.glb").read_bytes()
 MODELS = Path(__file__).parents[2].parent / "shared" / "gltf"

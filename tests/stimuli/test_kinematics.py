@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stimuli.bodies import load_body
+from stimuli.bodies.known import load_body
 from stimuli.kinematics import skinning_matrices, world_joints, world_matrices
-from stimuli.legs import Leg, solve
+from stimuli.legs.two_bone import Leg, solve
 from stimuli.rotations import about_axis
 from stimuli.skeleton import JOINTS, Pose
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stimuli.actors import load_actor
-from stimuli.bodies import load_body
+from stimuli.bodies.known import load_body
 from stimuli.methods import recipe
 from stimuli.methods.delivery import delivered
 from stimuli.methods.errors import MethodError

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from stimuli.actors import load_actor
+from stimuli.bodies.point_light import CARRIERS, FIGURES, MARKERS, STICKS, carried, figure_lines, resting, scrambling
 from stimuli.kinematics import world_joints
-from stimuli.point_light import CARRIERS, FIGURES, MARKERS, STICKS, carried, figure_lines, resting, scrambling
 from stimuli.skeleton import JOINTS
 from stimuli.walker import drawn_pose, skin_matrices
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from stimuli.bodies import load_body
-from stimuli.contact import STANCE_END
-from stimuli.foot_paths import PHASES
+from stimuli.bodies.known import load_body
 from stimuli.gait_model import Step, WalkCurves, curves, load_gait_model
+from stimuli.legs.contact import STANCE_END
+from stimuli.legs.foot_paths import PHASES
 from stimuli.retarget import Figure, scaled, walk_cycle
 
 

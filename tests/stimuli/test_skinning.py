@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from stimuli.bodies import load_body
+from stimuli.bodies.known import load_body
+from stimuli.bodies.skinning import skin
 from stimuli.skeleton import JOINTS
-from stimuli.skinning import skin
 
 STILL = np.tile(np.eye(3, 4), (len(JOINTS), 1, 1))
 

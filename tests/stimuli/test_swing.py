@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stimuli.actors import load_actor
-from stimuli.swing import calm_curve, calm_swing
+from stimuli.legs.swing import calm_curve, calm_swing
 
 LEG = load_actor("M1").figure.legs[1]
 N = 256

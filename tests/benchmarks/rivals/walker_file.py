@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from stimuli.actors import load_actor
-from stimuli.crowd_bodies import crowd_body
+from stimuli.crowds.bodies import crowd_body
 from stimuli.skeleton import JOINTS, PARENTS
 from stimuli.walker import drawn_pose
 

@@ -1,6 +1,6 @@
 """A swinging leg without a twitch: hip-ankle distance and direction smoothed between toe-off and heel strike.
 
-What bends a captured foot's way through the air (stimuli/foot_channels.py) turns sharply somewhere, and near the
+What bends a captured foot's way through the air (stimuli/legs/foot_channels.py) turns sharply somewhere, and near the
 straight leg a millimetre is degrees of the knee. So the knee's bend and the leg's direction are smoothed, not the
 ankle's place: what is drawn never asks more than the leg has. Knows one leg in its plane; no skeleton, no actor.
 """
@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from stimuli.legs import Leg, reach
+from stimuli.legs.two_bone import Leg, reach
 from stimuli.skeleton import Floats
 
 Bools = NDArray[np.bool_]

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from stimuli import contact
 from stimuli.blend import FOOT_CHANNELS
-from stimuli.crowd_table import PLANES, UPPER_COUNT, Constants, Mix, Singles
-from stimuli.legs import STRAIGHTEST
+from stimuli.crowds.table import PLANES, UPPER_COUNT, Constants, Mix, Singles
+from stimuli.legs import contact
+from stimuli.legs.two_bone import STRAIGHTEST
 from stimuli.skeleton import JOINTS, Floats
 from stimuli.walker import LOWERING_SOFTNESS
 

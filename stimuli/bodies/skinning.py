@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stimuli.body import Surface
+from stimuli.bodies.body import Surface
 from stimuli.skeleton import Floats
 
 

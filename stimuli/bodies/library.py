@@ -8,8 +8,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from stimuli.bodies.point_light import FIGURES
 from stimuli.body_files.errors import BodyError
-from stimuli.point_light import FIGURES
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
 MATCHED, MISMATCHED = "matched", "mismatched"

@@ -14,11 +14,11 @@ from functools import cached_property
 import numpy as np
 
 from stimuli.actors import Actor
-from stimuli.body import Body
-from stimuli.contact import Sole
+from stimuli.bodies.body import Body
+from stimuli.bodies.skinning import skin
+from stimuli.legs.contact import Sole
 from stimuli.retarget import Figure
 from stimuli.skeleton import JOINTS, Floats
-from stimuli.skinning import skin
 from stimuli.walker import drawn_pose, skin_matrices
 
 _FEET = [index for index, name in enumerate(JOINTS) if name.endswith(("Foot", "Toes"))]

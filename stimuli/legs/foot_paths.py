@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stimuli import contact
-from stimuli.contact import Sole
+from stimuli.legs import contact
+from stimuli.legs.contact import Sole
 from stimuli.skeleton import Floats
 
 SAMPLES = 256
@@ -25,7 +25,7 @@ class FootPath:
 
     pitch: as drawn; yaw, knee_yaw: rad; side: m, of its footprint
     ankle: (N, 3) m from the footprint's forward place; forward: (N,) m, how far the foot has rolled along itself
-    calm:  whether the leg's twitches are taken out (stimuli/swing.py)
+    calm:  whether the leg's twitches are taken out (stimuli/legs/swing.py)
     """
 
     stance: float

@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from stimuli.blend import CycleTable, WalkCycle
-from stimuli.bodies import load_body
+from stimuli.bodies.known import load_body
 from stimuli.gait_model import GRAVITY, GaitModel, Step, WalkCurves, load_gait_model
 from stimuli.retarget import Figure, walk_cycle
 from stimuli.skeleton import Floats

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from stimuli import contact
-from stimuli.contact import Sole
-from stimuli.foot_paths import PHASES, SAMPLES, FootPath, heel_rises, pitched, smoothed, still_in_stance
-from stimuli.legs import Leg, reach
+from stimuli.legs import contact
+from stimuli.legs.contact import Sole
+from stimuli.legs.foot_paths import PHASES, SAMPLES, FootPath, heel_rises, pitched, smoothed, still_in_stance
+from stimuli.legs.two_bone import Leg, reach
 from stimuli.skeleton import Floats
 
 Bools = NDArray[np.bool_]

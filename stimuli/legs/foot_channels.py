@@ -10,13 +10,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from stimuli import contact
 from stimuli.blend import FOOT_CHANNELS
-from stimuli.foot_paths import PHASES, smoothed, swing_window
-from stimuli.leg_paths import BUILT_REACH, Hips, LegPath
-from stimuli.legs import Leg
+from stimuli.legs import contact
+from stimuli.legs.foot_paths import PHASES, smoothed, swing_window
+from stimuli.legs.leg_paths import BUILT_REACH, Hips, LegPath
+from stimuli.legs.swing import calm_curve, calm_swing
+from stimuli.legs.two_bone import Leg
 from stimuli.skeleton import Floats
-from stimuli.swing import calm_curve, calm_swing
 
 LOWERED = 0.12
 """Share of swing, the last, in which the foot comes down; above the ground as long as it still moves ahead."""

@@ -14,9 +14,9 @@ from typing import Literal
 
 import numpy as np
 
-from stimuli.bodies import hair_names
-from stimuli.builds import GIRTHS
-from stimuli.crowd_motions import BODIES, Sex
+from stimuli.bodies.builds import GIRTHS
+from stimuli.bodies.known import hair_names
+from stimuli.crowds.motions import BODIES, Sex
 from stimuli.skeleton import Floats
 
 Palette = Literal["varied", "equal_luminance"]

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stimuli.bodies import load_body, with_girths
-from stimuli.body import Body, Surface
-from stimuli.builds import GIRTHS
+from stimuli.bodies.body import Body, Surface
+from stimuli.bodies.builds import GIRTHS
+from stimuli.bodies.known import load_body, with_girths
 
 LEVELS = 3  # coarse ones, after the body's own
 KEPT = {

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from stimuli.contact import ARRIVAL, FLAT_ZONE, STANCE_END, TOE_BEND_LIMIT, TOE_BEND_SOFTNESS
-from stimuli.crowd_table import DEPTH_ORDER, PLANES, UPPER_COUNT, Mix, Singles
-from stimuli.legs import STRAIGHTEST
+from stimuli.crowds.table import DEPTH_ORDER, PLANES, UPPER_COUNT, Mix, Singles
+from stimuli.legs.contact import ARRIVAL, FLAT_ZONE, STANCE_END, TOE_BEND_LIMIT, TOE_BEND_SOFTNESS
+from stimuli.legs.two_bone import STRAIGHTEST
 from stimuli.skeleton import JOINTS, PARENTS, Floats
 from stimuli.walker import LOWERING_SOFTNESS
 

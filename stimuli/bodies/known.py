@@ -10,15 +10,15 @@ from pathlib import Path
 
 import numpy as np
 
-from stimuli.body import Body, Surface
+from stimuli.bodies.body import Body, Surface
+from stimuli.bodies.builds import GIRTHS, girths_of
+from stimuli.bodies.library import MATCHED, MISMATCHED, OWN_BUILD, imported_names, path_of
+from stimuli.bodies.point_light import FIGURES
+from stimuli.bodies.skinning import skin
 from stimuli.body_files.baked import haircuts, read_baked
 from stimuli.body_files.errors import BodyError
 from stimuli.body_files.imported import import_body
-from stimuli.body_library import MATCHED, MISMATCHED, OWN_BUILD, imported_names, path_of
-from stimuli.builds import GIRTHS, girths_of
-from stimuli.point_light import FIGURES
 from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
-from stimuli.skinning import skin
 
 __all__ = [
     "BodyError",

@@ -13,7 +13,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from stimuli.crowd_motions import SEXES, UNREMARKABLE, Style, motion_of
+from stimuli.crowds.motions import SEXES, UNREMARKABLE, Style, motion_of
 from stimuli.skeleton import Floats
 
 LANE = 0.82  # m from lane to lane

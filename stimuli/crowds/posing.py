@@ -10,7 +10,7 @@ import numpy as np
 
 from stimuli.actors import Actor
 from stimuli.blend_tree import blend_weights
-from stimuli.crowd_table import Mix, Singles, WalkTable
+from stimuli.crowds.table import Mix, Singles, WalkTable
 from stimuli.skeleton import Floats
 from stimuli.walker import drawn_pose, skin_matrices
 
@@ -31,10 +31,10 @@ def accelerated() -> bool:
 def poser() -> Poser:
     """The fastest way there is; both give the same matrices within 1e-4. With numba, compiled by the first call."""
     if accelerated():
-        from stimuli.crowd_poses_compiled import many_matrices
+        from stimuli.crowds.compiled_poses import many_matrices
 
         return many_matrices
-    from stimuli.crowd_poses import many_matrices as planes
+    from stimuli.crowds.poses import many_matrices as planes
 
     return planes
 
