@@ -88,9 +88,10 @@ TABLES: dict[str, dict[str, tuple[str, ...]]] = {
         "hips spine spine4|spine3|spine2 neck head",
         "shoulder arm|upperarm forearm hand thigh shin foot toe",
     ),
+    # As Bandai Namco's, but without neck and shoulders, and a hand hangs on a wrist.
     "KayKit": _table(
-        "hips spine chest neck head",
-        "shoulder upperarm lowerarm wrist|hand upperleg lowerleg foot toes",
+        "hips spine chest - head",
+        "- upperarm lowerarm wrist|hand upperleg lowerleg foot toes",
         "{}l",
         "{}r",
     ),
@@ -109,13 +110,14 @@ def normalise(name: str) -> str:
 def roles_from_names(joints: Sequence[str], parents: Sequence[int]) -> tuple[str, dict[str, int]]:
     """The table that gives most joints a role, and the roles it gives (role -> index into joints).
 
+    Of tables that give as many, the one with the more usual names counts, then the one that lacks fewest of its joints.
     Of joints whose normalised names are equal the first counts. A role whose parent role does not lie above it
     in the tree is dropped, so a like-named prop or twist joint does not become a limb.
     """
     where: dict[str, int] = {}
     for index, joint in enumerate(joints):
         where.setdefault(normalise(joint), index)
-    ranked: list[tuple[int, int, str, dict[str, int]]] = []
+    ranked: list[tuple[int, int, int, str, dict[str, int]]] = []
     for name, table in TABLES.items():
         roles: dict[str, int] = {}
         for role, words in table.items():
@@ -124,8 +126,9 @@ def roles_from_names(joints: Sequence[str], parents: Sequence[int]) -> tuple[str
                 roles[role] = found[0]
         roles = _within_one_tree(roles, parents)
         preferred = sum(normalise(joints[joint]) == table[role][0] for role, joint in roles.items())
-        ranked.append((len(roles), preferred + (name == "Mixamo" and _mixamo(joints)), name, roles))
-    count, _, name, roles = max(ranked, key=lambda rank: rank[:2])
+        lacking = sum("-" not in words[0] for words in table.values()) - len(roles)
+        ranked.append((len(roles), preferred + (name == "Mixamo" and _mixamo(joints)), -lacking, name, roles))
+    count, _, _, name, roles = max(ranked, key=lambda rank: rank[:3])
     return (name, roles) if count else ("", {})
 
 
