@@ -12,7 +12,7 @@ import time
 from itertools import product
 from pathlib import Path
 
-from tests.benchmarks.crowds import drawing, own_work, rivals
+from tests.benchmarks.crowds import drawing, graphics_card, own_work, rivals
 from tests.benchmarks.importing import importing
 from tests.benchmarks.measuring import fastest, machine, row
 from tests.benchmarks.methods import methods
@@ -70,7 +70,7 @@ def main(arguments: list[str]) -> None:
         timing(int(arguments[1]) if arguments[1:] else 300)
         return
     first = (help_text, poses, methods, importing, timing, simulation, analysis_of_the_thesis)
-    for benchmark in (*first, own_work, drawing, rivals):
+    for benchmark in (*first, own_work, drawing, graphics_card, rivals):
         if not arguments or benchmark.__name__ in arguments:
             benchmark()
 

@@ -54,15 +54,14 @@ def test_left_hip_is_the_thigh_and_the_joint_above_it_is_none():
     assert roles["leftUpperLeg"] == 2
 
 
-KAYKIT = (
-    "root hips spine chest upperarm.l lowerarm.l wrist.l hand.l handslot.l upperarm.r lowerarm.r wrist.r hand.r "
-    "handslot.r head upperleg.l lowerleg.l foot.l toes.l upperleg.r lowerleg.r foot.r toes.r"
-).split()
+ARMS = [f"{part}.{side}" for side in "lr" for part in ("upperarm", "lowerarm", "wrist", "hand", "handslot")]
+LEGS = [f"{part}.{side}" for side in "lr" for part in ("upperleg", "lowerleg", "foot", "toes")]
+KAYKIT = ["root", "hips", "spine", "chest", *ARMS, "head", *LEGS]
 KAYKIT_PARENTS = [-1, 0, 1, 2, 3, 4, 5, 6, 7, 3, 9, 10, 11, 12, 3, 1, 15, 16, 17, 1, 19, 20, 21]
 
 
 def test_of_two_tables_that_fit_as_well_the_one_that_lacks_no_joint_is_named():
-    """The joints of KayKit's Knight (CC0): Bandai Namco's names, without the neck and shoulders that its captures have."""
+    """The joints of KayKit's Knight (CC0): Bandai Namco's names, without the neck and shoulders of its captures."""
     names, roles = roles_from_names(KAYKIT, KAYKIT_PARENTS)
     assert names == "KayKit"
     assert len(roles) == 18
