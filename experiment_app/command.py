@@ -13,11 +13,11 @@ from typing import Annotated, Literal
 
 from cyclopts import App, Parameter
 
-from experiment_app.body_commands import body_commands
-from experiment_app.data_commands import StudyFolder, console, drop_out, export, withdraw
+from experiment_app.commands.bodies import body_commands
+from experiment_app.commands.data import StudyFolder, console, drop_out, export, withdraw
+from experiment_app.commands.motion import actor_commands, clip
+from experiment_app.commands.styles import style_commands
 from experiment_app.errors import RunError, UsageError
-from experiment_app.motion_commands import actor_commands, clip
-from experiment_app.style_commands import style_commands
 from experiment_app.terminal import out, problems, say, typed, with_progress
 
 app = App(
@@ -166,8 +166,8 @@ def check(
     seed: Annotated[int | None, Parameter(help="Seed of that participant's order; by default that of P07.")] = None,
 ) -> int:
     """Check a study file: every mistake with its line, the number of trials, how long it takes, the balance."""
-    from experiment_app.balance import what_participant_sees
-    from experiment_app.check import checked_study, design_picture, summary, text_notes
+    from experiment_app.commands.balance import what_participant_sees
+    from experiment_app.commands.check import checked_study, design_picture, summary, text_notes
 
     if picture is not None and picture.suffix.lower() != ".png":
         raise UsageError(f"--picture {picture}: the picture is a PNG; let its name end in .png, as balance.png.")
@@ -196,8 +196,8 @@ def simulate(
     seed: Annotated[int, Parameter(help="The same seed gives the same participants and responses.")] = 0,
 ) -> int:
     """Run a study with simulated participants, without a window and without waiting."""
-    from experiment_app.check import checked_study
-    from experiment_app.simulate import simulate as simulated_runs
+    from experiment_app.commands.check import checked_study
+    from experiment_app.simulated.simulate import simulate as simulated_runs
 
     file = checked_study(study)
     count = file.study.participants.planned if participants is None else participants
@@ -222,7 +222,7 @@ def analyse(
 ) -> int:
     """Follow the study file's planned analysis: tables, figures and one self-contained report."""
     from analysis.planned_analysis import analyse as planned_analysis
-    from experiment_app.derived import Derived, note_derived
+    from experiment_app.participants.derived import Derived, note_derived
 
     with out.status("Analysing"):
         outcome = planned_analysis(folder, out_folder)
@@ -272,7 +272,7 @@ def power(
         simulate_power,
         write_part,
     )
-    from experiment_app.check import checked_study
+    from experiment_app.commands.check import checked_study
 
     file = checked_study(study)
     notes = power_notes(file.text)
@@ -316,7 +316,7 @@ def demo(
 
     With a screen you take part yourself; without one a simulated participant does, off-screen.
     """
-    from experiment_app.demo import run_demo
+    from experiment_app.commands.demo import run_demo
 
     return run_demo(study, folder, off_screen=off_screen, say=say, progress=with_progress)
 
@@ -329,7 +329,7 @@ def doctor(
     keys: Annotated[bool, Parameter(help="Measure how injected keys are stamped (X11).")] = True,
 ) -> int:
     """What this computer's graphics, display and keyboard give, measured: whether timing can be published, and why."""
-    from experiment_app.doctor import examine, lines
+    from experiment_app.commands.doctor import examine, lines
 
     for line in lines(examine(off_screen, display=display, keys=keys)):
         out.print(line, markup=False)
@@ -343,7 +343,7 @@ def certificate(
     path: Annotated[Path | None, Parameter(name="--out", help="Write it to a file (Markdown) instead.")] = None,
 ) -> int:
     """The timing certificate of a run: frames, late frames, key times, a verdict, a paragraph for the paper."""
-    from experiment_app.timing_page import certificate_of
+    from experiment_app.timing.page import certificate_of
 
     text = certificate_of(run_folder)
     if path is None:
@@ -371,8 +371,8 @@ def film(
     ] = Path("clip.mp4"),
 ) -> int:
     """Film a condition of a study off-screen at an exact frame rate; the frame times are read back and verified."""
-    from experiment_app.check import checked_study
-    from experiment_app.film import condition_of, film_scenes, walking, write_film
+    from experiment_app.commands.check import checked_study
+    from experiment_app.pictures.film import condition_of, film_scenes, walking, write_film
 
     frame_rate = _frame_rate(rate)
     if not 0 < seconds <= 3600:
@@ -431,7 +431,7 @@ def gallery(
     *, folder: Annotated[Path, Parameter(name="--out", help="Folder for the pictures.")] = Path("docs/images")
 ) -> int:
     """Make every picture of the documentation's gallery page."""
-    from experiment_app.gallery import make_gallery
+    from experiment_app.pictures.gallery import make_gallery
 
     for path in make_gallery(folder):
         out.print(f"  {path}", markup=False)
@@ -443,7 +443,7 @@ def schema(
     *, path: Annotated[Path, Parameter(name="--out", help="Where to write it.")] = Path("study.schema.json")
 ) -> int:
     """Write the JSON Schema of study files, with which editors complete and check them."""
-    from experiment_app.check import schema_text
+    from experiment_app.commands.check import schema_text
 
     path.write_text(schema_text(), encoding="utf-8")
     out.print(f"Schema written to {path}; name it in a study file's first line:", markup=False)
@@ -457,7 +457,7 @@ def copy(
     path: Annotated[Path, Parameter(help="The new file; never overwritten.")],
 ) -> int:
     """Copy a shipped study file, to change it into your own, and the schema beside it."""
-    from experiment_app.check import schema_text
+    from experiment_app.commands.check import schema_text
     from protocols.study_file import find_study
 
     _, text = find_study(study)
@@ -487,7 +487,7 @@ def compare_methods_command(
     ),
 ) -> int:
     """Compare the ways of making a walk with captured walks: joint angles, foot slide, rebuilt poulaines, pictures."""
-    from experiment_app.method_commands import compare_methods
+    from experiment_app.commands.methods import compare_methods
 
     if not actors:
         raise UsageError("name at least one actor, as gaitlab compare-methods F1.")

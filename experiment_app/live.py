@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
 
-from experiment_app.check import check_names, checked_study, refuse_mistakes
+from experiment_app.commands.check import check_names, checked_study, refuse_mistakes
 from experiment_app.console.asking import listening
 from experiment_app.console.status_line import status_line
 from experiment_app.console.watching import watched_so_far
@@ -22,8 +22,9 @@ from experiment_app.crowds import plan_of
 from experiment_app.errors import RunError, UsageError
 from experiment_app.gaze.recording import gaze_watched, recording_gaze
 from experiment_app.loop import run_session
-from experiment_app.lsl import import_pylsl
-from experiment_app.markers import announcing
+from experiment_app.markers.lsl import import_pylsl
+from experiment_app.markers.stream import announcing
+from experiment_app.markers.triggers import trigger_line, triggering
 from experiment_app.opening import (
     OpenRun,
     kind_of,
@@ -33,12 +34,11 @@ from experiment_app.opening import (
     refuse_mixed,
     unfinished_run,
 )
-from experiment_app.participants import first_headers
+from experiment_app.participants.arrivals import first_headers
 from experiment_app.run_folder import Run, check_participant
 from experiment_app.staging import crowd_of, making_of
 from experiment_app.terminal import typed
-from experiment_app.timing_page import write_certificate
-from experiment_app.triggers import trigger_line, triggering
+from experiment_app.timing.page import write_certificate
 from experiment_app.walkers import cast, own_step_frequency
 from experiment_app.windows.desktop import DesktopWindow, Device
 from experiment_app.windows.display_loss import display_loss

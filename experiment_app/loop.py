@@ -6,9 +6,9 @@ import gc
 from dataclasses import replace
 from typing import Protocol
 
-from experiment_app.frames import TrialFrames
 from experiment_app.scene import Scene, Walker
 from experiment_app.staging import stage
+from experiment_app.timing.frames import TrialFrames
 from experiment_app.windows.window import Window
 from protocols.events import Saved, Shown
 from protocols.record import Click, Key, Paused, Record, Resumed, TrialRecord

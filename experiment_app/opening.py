@@ -12,12 +12,12 @@ from typing import Any
 
 from experiment_app.errors import UsageError
 from experiment_app.journal import Journal, create_journal, reopen_journal
-from experiment_app.participants import first_headers, participant_number
+from experiment_app.participants.arrivals import first_headers, participant_number
 from experiment_app.run_folder import Run, new_run, participant_runs, progress, run_numbers
 from protocols import resuming
-from protocols.assignment import group_of
-from protocols.consistency import shown_walks
-from protocols.design import default_seed
+from protocols.mistakes.consistency import shown_walks
+from protocols.orders.assignment import group_of
+from protocols.orders.design import default_seed
 from protocols.plan import Plan, make_plan
 from protocols.record import Continued, Header
 from protocols.study import Study

@@ -15,8 +15,8 @@ from typing import IO, Any
 
 from experiment_app.crash_note import crash_reason
 from experiment_app.errors import UsageError
-from protocols.assignment import GIVEN_BACK
 from protocols.journal_text import DamagedJournalError, JournalText, read_text
+from protocols.orders.assignment import GIVEN_BACK
 from protocols.record import FORMAT, OPENINGS
 from protocols.resuming import Progress
 from protocols.session import answer_columns

@@ -7,16 +7,16 @@ from functools import cache
 
 from experiment_app.scene import Box, Camera, Crowd, Line, Marks, Page, Row, Scene, Slider, Walker
 from experiment_app.walkers import own_step_frequency
-from protocols.consistency import MOST_TRIALS
 from protocols.crowd_part import CrowdOf
 from protocols.form import Choice, Form
+from protocols.mistakes.consistency import MOST_TRIALS
 from protocols.plan import QuestionsStep, TextStep, TrialStep
-from protocols.rating import CONFIRM, ON_SCALE
 from protocols.session import Overlay, Session
 from protocols.stimulus import Making as OwnMaking
 from protocols.stimulus import Walk
 from protocols.study import Study
-from protocols.task import Scale, Seen, View
+from protocols.tasks.rating import CONFIRM, ON_SCALE
+from protocols.tasks.task import Scale, Seen, View
 from protocols.viewing import field_of_view
 from stimuli.methods.recipe import Making
 

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from protocols.order import Factors
+from protocols.orders.order import Factors
 from protocols.parts import Name, Number, Part, Text
 
 Condition = Annotated[str, Field(min_length=1)]

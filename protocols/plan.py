@@ -9,12 +9,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from protocols.adaptive import Tracks, begin_tracks
-from protocols.design import Trial, make_trials, practice_trials
-from protocols.sides import balanced_orders
+from protocols.orders.adaptive import Tracks, begin_tracks
+from protocols.orders.design import Trial, make_trials, practice_trials
 from protocols.stimulus import Walk
 from protocols.study import Pages, Question, Study, TextPage
-from protocols.task import Setup, TaskTrial
+from protocols.tasks.sides import balanced_orders
+from protocols.tasks.task import Setup, TaskTrial
 
 QUESTIONS_PER_PAGE = 4
 

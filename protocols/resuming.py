@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from protocols.adaptive import Tracks, after_response, ended
+from protocols.orders.adaptive import Tracks, after_response, ended
 from protocols.plan import Plan, Step, TextStep, TrialStep
 from protocols.study import Resume, TextPage
 

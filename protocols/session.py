@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from protocols.adaptive import Tracks, after_response, ended, placed, turns, why_over
 from protocols.events import Asked, Clicked, Closed, Event, FocusLost, KeyDown, KeyUp, Saved, Shown
 from protocols.form import Choice, Entry, Form, handle_form
+from protocols.orders.adaptive import Tracks, after_response, ended, placed, turns, why_over
 from protocols.plan import Plan, QuestionsStep, Step, TextStep, TrialStep
 from protocols.record import (
     Answered,
@@ -28,7 +28,7 @@ from protocols.record import (
     TrialRecord,
 )
 from protocols.study import ChoiceQuestion, NumberQuestion, Question, TextPage
-from protocols.task import TaskTrial
+from protocols.tasks.task import TaskTrial
 
 STOPPED_BY_EXPERIMENTER = "stopped by the experimenter"
 """Why a session ended that the experimenter stopped from the console."""

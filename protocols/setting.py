@@ -13,9 +13,9 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, TypeAdapter, ValidationError
 
-from protocols.mistake import Mistake, Place, no_such
+from protocols.mistakes.mistake import Mistake, Place, no_such
+from protocols.mistakes.wrong_types import wrong_type
 from protocols.parts import Level, Number, Part, Reference, Speed, StepFrequency, Text
-from protocols.wrong_types import wrong_type
 
 FACTOR, TABLE, CONSTANT = "$factor", "$table", "$constant"
 

@@ -9,15 +9,15 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
-from protocols.adjustment_part import Adjustment
-from protocols.choice_part import Choice
 from protocols.further_tests import DPrime, Pairs, Proportions, Psychometric, TTest
 from protocols.gaze import GazeSettings
-from protocols.order import ListOrder, Order
+from protocols.orders.order import ListOrder, Order
 from protocols.parts import Key, Level, Name, Number, Part, Text
-from protocols.rating_part import Rating
 from protocols.simulated import ChoosingObservers, RatingObservers
 from protocols.stimulus import Stimulus
+from protocols.tasks.adjustment_part import Adjustment
+from protocols.tasks.choice_part import Choice
+from protocols.tasks.rating_part import Rating
 from protocols.viewing import Display
 
 Task = Annotated[Adjustment | Choice | Rating, Field(discriminator="kind")]

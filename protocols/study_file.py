@@ -18,10 +18,10 @@ from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from protocols.mistake import Mistake, Place
+from protocols.mistakes.mistake import Mistake, Place
+from protocols.mistakes.wrong_types import shortened, wrong_type
 from protocols.setting import CONSTANT, FACTOR, LIMITS, TABLE
 from protocols.study import Study
-from protocols.wrong_types import shortened, wrong_type
 
 MISSING = "this key is missing"
 

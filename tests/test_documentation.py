@@ -58,7 +58,7 @@ def test_links_and_pictures_lead_somewhere(path):
 
 
 def test_the_page_of_studies_names_all_with_their_participants_and_trials():
-    from protocols.design import conditions
+    from protocols.orders.design import conditions
     from protocols.study_file import read_study, shipped_studies
 
     rows = re.findall(
@@ -88,7 +88,7 @@ def test_the_readme_names_all_studies_with_their_participants_trials_and_minutes
 
 
 def test_the_yaml_of_the_study_file_page_is_accepted_in_a_study():
-    from protocols.consistency import inconsistencies
+    from protocols.mistakes.consistency import inconsistencies
     from protocols.study_file import parse_study
     from tests.protocols.studies import shipped_text
 
@@ -113,7 +113,7 @@ def test_the_orders_of_the_study_file_page_are_orders():
     from pydantic import TypeAdapter
     from ruamel.yaml import YAML
 
-    from protocols.order import Order
+    from protocols.orders.order import Order
 
     orders = [block for block in blocks(ROOT / "docs" / "study-file.md", "yaml") if block.startswith("order:")]
     kinds = [TypeAdapter(Order).validate_python(YAML(typ="safe").load(block)["order"]).kind for block in orders]

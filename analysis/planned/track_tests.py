@@ -13,10 +13,10 @@ from analysis.planned.further_test import FurtherTest
 from analysis.planned.plan import AnalysisPlan
 from analysis.planned.plan_parts import AdaptivePlan
 from analysis.recorded.answers import answers, cell_labels
-from protocols.adaptive import begin_placement
-from protocols.order import AdaptiveOrder, QuestPlusRule
-from protocols.quest_plus import QuestPlus
-from protocols.staircase import Staircase, reversal_mean
+from protocols.orders.adaptive import begin_placement
+from protocols.orders.order import AdaptiveOrder, QuestPlusRule
+from protocols.orders.quest_plus import QuestPlus
+from protocols.orders.staircase import Staircase, reversal_mean
 
 AT_END = "settled at the end of the thresholds"
 

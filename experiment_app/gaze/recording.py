@@ -10,7 +10,7 @@ from experiment_app.gaze.samples import GazeSample, Looking
 from experiment_app.gaze.stream import GazeStream
 from experiment_app.gaze.watching import GazeWatch
 from experiment_app.loop import Recorder
-from experiment_app.lsl import clock_offset
+from experiment_app.markers.lsl import clock_offset
 from experiment_app.windows.desktop import DesktopWindow
 from protocols.gaze import GazeSettings
 from protocols.record import GazeTrace, Record, TrialBegun, TrialRecord

@@ -8,7 +8,7 @@ from typing import Any
 
 from experiment_app.errors import UsageError
 from experiment_app.gaze.samples import GazeSample
-from experiment_app.lsl import import_pylsl
+from experiment_app.markers.lsl import import_pylsl
 from protocols.gaze import GazeSettings
 
 KNOWN_LABELS = (("x", "y"), ("norm_pos_x", "norm_pos_y"), ("gaze_x", "gaze_y"), ("gaze.x", "gaze.y"), ("X", "Y"))

@@ -8,8 +8,8 @@ from fractions import Fraction
 from pathlib import Path
 
 from experiment_app.errors import UsageError
-from experiment_app.film import Pixels, write_film
 from experiment_app.opening import recorded_plan, recorded_versions
+from experiment_app.pictures.film import Pixels, write_film
 from experiment_app.replay.film import film_length, trial_film
 from experiment_app.replay.frames import replayed_frames
 from experiment_app.replay.recorded import RecordedTrial, recorded_trials

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from experiment_app.film import Pixels, film_scenes
+from experiment_app.pictures.film import Pixels, film_scenes
 from experiment_app.replay.frames import ReplayedFrame
 from experiment_app.replay.recorded import RecordedTrial
 from experiment_app.replay.trace import HEIGHT, make_strip, watched_times

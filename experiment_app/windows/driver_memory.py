@@ -7,7 +7,7 @@ import sys
 
 import moderngl
 
-from experiment_app.timing import is_software
+from experiment_app.timing.facts import is_software
 
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3  # of mallopt(3)
 KEPT = 1 << 28  # bytes at the heap's top that are not handed back

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiment_app.errors import UsageError
-from experiment_app.observer import SimulatedParticipant
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Scene
+from experiment_app.simulated.observer import SimulatedParticipant
 from experiment_app.walkers import drawn_walkers, measured_gait, pose_checksum
 from experiment_app.windows.driver_memory import keep_freed_memory
 from experiment_app.windows.window import Flip

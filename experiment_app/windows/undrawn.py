@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from experiment_app.observer import SimulatedParticipant
 from experiment_app.scene import Scene
+from experiment_app.simulated.observer import SimulatedParticipant
 from experiment_app.windows.window import Flip
 from protocols.events import Event
 from protocols.session import Interval, Session

@@ -15,7 +15,7 @@ import analysis.examples
 from analysis.planned.plan import read_plan
 from analysis.recorded import journal
 from analysis.recorded.trials import trials_table
-from experiment_app.simulate import simulate
+from experiment_app.simulated.simulate import simulate
 from protocols.study_file import read_study, shipped_studies
 
 RNG = np.random.default_rng(17)

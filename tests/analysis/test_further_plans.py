@@ -15,7 +15,7 @@ from analysis.figures.checks import session_course
 from analysis.planned.plan import plan_of, read_plan
 from analysis.planned_analysis import AnalysisOutcome, analyse
 from analysis.recorded.trials import _add_derived
-from protocols.consistency import inconsistencies
+from protocols.mistakes.consistency import inconsistencies
 from protocols.study_file import StudyFileError, parse_study
 from tests.analysis.recorded import study_text, write_study
 

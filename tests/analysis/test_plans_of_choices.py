@@ -19,8 +19,8 @@ from analysis.planned.plan import plan_of
 from analysis.recorded.answers import answers, readable
 from analysis.recorded.gait_measures import gaze_rows
 from analysis.recorded.trials import used_trials
-from experiment_app.simulate import simulate
-from protocols.consistency import inconsistencies
+from experiment_app.simulated.simulate import simulate
+from protocols.mistakes.consistency import inconsistencies
 from protocols.study_file import StudyFileError, parse_study
 
 STUDY = Path(__file__).with_name("choosing.yaml")

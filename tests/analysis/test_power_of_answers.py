@@ -12,7 +12,7 @@ from analysis import AnalysisError, power_by_simulation
 from analysis.power.simulated_answers import Choosers, Raters
 from analysis.power.simulated_experiments import cell_means_of, experiment_model
 from analysis.power.simulation import as_dict
-from experiment_app.behaviour import _shifted
+from experiment_app.simulated.behaviour import _shifted
 from protocols.study_file import read_study
 
 SHARES = np.array([0.1, 0.5, 0.9, 0.0, 1.0])

@@ -12,7 +12,7 @@ import pytest
 
 from analysis.check_reference import worst_differences
 from experiment_app.command import run
-from protocols.consistency import inconsistencies
+from protocols.mistakes.consistency import inconsistencies
 from protocols.study_file import parse_study
 from tests.analysis.recorded import study_text, write_study
 from tests.analysis.reference import path

@@ -40,7 +40,7 @@ def analysis_of_the_thesis() -> None:
 
 def simulation() -> None:
     """22 participants of 96 trials through the real loop and journal."""
-    from experiment_app.simulate import simulate
+    from experiment_app.simulated.simulate import simulate
     from protocols.study_file import read_study
 
     with tempfile.TemporaryDirectory() as folder:

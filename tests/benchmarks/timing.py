@@ -18,11 +18,11 @@ from dataclasses import replace
 from pathlib import Path
 from statistics import median
 
-from experiment_app.injected_keys import NOBODY, KeyErrors, matched, measure_keys
-from experiment_app.key_injector import Injector, can_inject
 from experiment_app.loop import run_session
 from experiment_app.scene import Scene, Walker
-from experiment_app.timing import percentile_90
+from experiment_app.timing.facts import percentile_90
+from experiment_app.timing.injected_keys import NOBODY, KeyErrors, matched, measure_keys
+from experiment_app.timing.key_injector import Injector, can_inject
 from experiment_app.windows.desktop import DesktopWindow
 from experiment_app.windows.window import Flip
 from protocols.plan import Plan, TrialStep, make_plan

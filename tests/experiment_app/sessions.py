@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from experiment_app.loop import run_session
-from experiment_app.observer import SimulatedParticipant, draw_observer
 from experiment_app.opening import OpenRun, open_new, open_unfinished, unfinished_run
+from experiment_app.simulated.observer import SimulatedParticipant, draw_observer
 from experiment_app.windows.undrawn import UndrawnWindow
 from protocols.session import Session, begin
 from protocols.study_file import StudyFile

@@ -7,12 +7,12 @@ from itertools import pairwise
 
 import pytest
 
-from experiment_app.balance import order_in_words
-from experiment_app.check import summary
+from experiment_app.commands.balance import order_in_words
+from experiment_app.commands.check import summary
 from experiment_app.run_folder import journal_lines, participant_runs
-from protocols.adaptive import after_response, begin_tracks
-from protocols.consistency import inconsistencies
 from protocols.events import Closed
+from protocols.mistakes.consistency import inconsistencies
+from protocols.orders.adaptive import after_response, begin_tracks
 from protocols.record import TrialRecord
 from protocols.session import answer_columns, handle
 from protocols.study_file import StudyFile, parse_study

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from experiment_app.balance import balance, order_in_words, what_participant_sees
 from experiment_app.command import run
-from experiment_app.dropping_out import drop_out
+from experiment_app.commands.balance import balance, order_in_words, what_participant_sees
 from experiment_app.errors import UsageError
-from experiment_app.participants import participant_number
+from experiment_app.participants.arrivals import participant_number
+from experiment_app.participants.dropping_out import drop_out
 from experiment_app.run_folder import journal_lines
-from experiment_app.simulate import simulate
+from experiment_app.simulated.simulate import simulate
 from protocols.study_file import StudyFile, parse_study
 from tests.experiment_app.sessions import opened, play
 from tests.protocols.studies import changed, ordered, short, study

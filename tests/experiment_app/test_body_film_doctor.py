@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from experiment_app.certificate import histogram
 from experiment_app.command import run
+from experiment_app.timing.certificate import histogram
 
 MAN = files("stimuli").joinpath("data", "bodies", "man.glb").read_bytes()
 
@@ -140,7 +140,7 @@ def test_a_video_keeps_colours_and_says_how_they_are_coded(tmp_path, ending):
 
     import numpy as np
 
-    from experiment_app.film import write_film
+    from experiment_app.pictures.film import write_film
 
     av = pytest.importorskip("av")
     colours = [(200, 40, 45), (40, 90, 200), (128, 128, 128), (60, 160, 70)]
@@ -164,7 +164,7 @@ def test_an_animated_picture_has_the_length_asked_for(tmp_path):
     import numpy as np
     from PIL import Image
 
-    from experiment_app.film import write_film
+    from experiment_app.pictures.film import write_film
 
     frames = [np.full((40, 60, 3), 5 * i, np.uint8) for i in range(31)]
     said_of_it = write_film(iter(frames), Fraction(60000, 1001), tmp_path / "clip.webp")

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from experiment_app.certificate import markdown, methods_paragraph, rows, verdict
 from experiment_app.command import run
 from experiment_app.loop import run_session
-from experiment_app.observer import SimulatedParticipant, draw_observer
 from experiment_app.opening import open_new
 from experiment_app.run_folder import journal_lines
-from experiment_app.timing import Timing, timing_of_run
-from experiment_app.timing_page import write_certificate
+from experiment_app.simulated.observer import SimulatedParticipant, draw_observer
+from experiment_app.timing.certificate import markdown, methods_paragraph, rows, verdict
+from experiment_app.timing.facts import Timing, timing_of_run
+from experiment_app.timing.page import write_certificate
 from protocols.session import begin
 from tests.experiment_app.test_loop import PERIOD, Display
 from tests.protocols.studies import short

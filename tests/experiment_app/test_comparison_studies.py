@@ -11,9 +11,9 @@ import pandas as pd
 import pytest
 
 from analysis.planned_analysis import analyse
-from experiment_app.behaviour import latent_mean
-from experiment_app.check import checked_study
-from experiment_app.simulate import simulate
+from experiment_app.commands.check import checked_study
+from experiment_app.simulated.behaviour import latent_mean
+from experiment_app.simulated.simulate import simulate
 from protocols.study_file import read_study
 
 

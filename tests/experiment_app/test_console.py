@@ -21,8 +21,8 @@ from experiment_app.console.status_line import status_line
 from experiment_app.console.watching import Watching, newest_run
 from experiment_app.errors import UsageError
 from experiment_app.loop import run_session
-from experiment_app.observer import SimulatedParticipant, draw_observer
 from experiment_app.run_folder import journal_lines
+from experiment_app.simulated.observer import SimulatedParticipant, draw_observer
 from experiment_app.windows.undrawn import UndrawnWindow
 from protocols.events import Asked, Clicked, KeyDown, Shown
 from protocols.plan import make_plan

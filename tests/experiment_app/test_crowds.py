@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from experiment_app.crowds import END, crowd_cast, drawn_crowd
-from experiment_app.film import condition_of, walking
+from experiment_app.pictures.film import condition_of, walking
 from experiment_app.render.cameras import place_camera
 from experiment_app.render.crowd_levels import BAND, HEIGHTS, levels_of, seen_instances, shadow_instances
 from experiment_app.render.renderer import Renderer

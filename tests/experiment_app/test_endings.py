@@ -16,9 +16,9 @@ import pytest
 from experiment_app import opening
 from experiment_app.errors import RunError, UsageError
 from experiment_app.loop import run_session
-from experiment_app.observer import SimulatedParticipant, draw_observer
 from experiment_app.opening import open_new
 from experiment_app.run_folder import participant_runs
+from experiment_app.simulated.observer import SimulatedParticipant, draw_observer
 from experiment_app.windows.undrawn import UndrawnWindow
 from protocols.events import Closed
 from protocols.session import begin

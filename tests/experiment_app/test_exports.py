@@ -24,7 +24,7 @@ from analysis.exports.runs import read_runs
 from analysis.exports.table import Table, csv_bytes, table_of, tsv_bytes
 from analysis.exports.trace import courses
 from experiment_app.loop import run_session
-from experiment_app.observer import SimulatedParticipant, draw_observer
+from experiment_app.simulated.observer import SimulatedParticipant, draw_observer
 from experiment_app.windows.undrawn import UndrawnWindow
 from protocols.events import Closed, FocusLost, KeyDown
 from protocols.record import Answered, decode_line, encode_line
@@ -125,9 +125,9 @@ def test_the_course_rebuilt_from_keys_ends_at_every_response_through_pauses_and_
 
 def test_the_course_between_two_corners_is_the_tasks_own_law(data):
     """Against the task played frame by frame at 60 Hz, where no pause interferes."""
-    from protocols import adjustment
     from protocols.events import KeyUp, Shown
     from protocols.stimulus import Walk
+    from protocols.tasks import adjustment
 
     task = adjustment.AdjustmentTask(80.0, 120.0, 10.0, 0.0)
     run = next(run for run in read_runs(data)[0] if run.participant == "P02")
@@ -357,7 +357,7 @@ def test_frames_and_gaze_come_out_frame_by_frame_with_late_ones_marked(data, tmp
 def test_data_of_ratings_and_choices_are_described_and_follow_the_rules_of_psych_ds(tmp_path, study):
     """`speed` is looked up for each `pair`, so that a pair is no number of m/s."""
     from analysis.exports.dictionary import of_study
-    from experiment_app.simulate import simulate
+    from experiment_app.simulated.simulate import simulate
     from protocols.study_file import read_study
 
     for _ in simulate(read_study(study), 1, tmp_path):

@@ -15,9 +15,9 @@ from experiment_app.windows import psychtoolbox_times
 from experiment_app.windows.gamepad import Gamepad
 from experiment_app.windows.key_times import NotedTimes, Stamp, open_key_times
 from experiment_app.windows.x_server_times import WRAP_MS, possible, unwrapped
-from protocols.adjustment import AdjustmentTask, AdjustmentTrial, begin
 from protocols.events import FocusLost, KeyDown, KeyUp, Shown
 from protocols.stimulus import Walk
+from protocols.tasks.adjustment import AdjustmentTask, AdjustmentTrial, begin
 
 
 @given(moment=st.floats(1.0, 3e7), delay=st.floats(0.0, 60.0))

@@ -8,9 +8,9 @@ import time
 
 import pytest
 
-from experiment_app.injected_keys import KEY, KEYSYM, NOBODY, matched, measure_keys
-from experiment_app.key_injector import Injector, can_inject
 from experiment_app.scene import Scene, Walker
+from experiment_app.timing.injected_keys import KEY, KEYSYM, NOBODY, matched, measure_keys
+from experiment_app.timing.key_injector import Injector, can_inject
 from experiment_app.windows.desktop import DesktopWindow
 from experiment_app.windows.offscreen import offscreen_context
 from experiment_app.windows.patch import Patch

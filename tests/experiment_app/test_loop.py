@@ -8,8 +8,8 @@ from itertools import pairwise
 import pytest
 
 from experiment_app.loop import run_session
-from experiment_app.observer import SimulatedParticipant, draw_observer
 from experiment_app.scene import Scene
+from experiment_app.simulated.observer import SimulatedParticipant, draw_observer
 from experiment_app.windows.window import Flip
 from protocols.events import KeyDown, KeyUp
 from protocols.plan import TrialStep, make_plan

@@ -11,7 +11,7 @@ import pytest
 
 from experiment_app.errors import UsageError
 from experiment_app.gaze.stream import chosen_channels
-from experiment_app.markers import marker
+from experiment_app.markers.stream import marker
 from protocols.gaze import GazeSettings
 from protocols.record import Answered, Ended, Paused, TrialBegun
 
@@ -45,8 +45,8 @@ def run_alone(script: str, folder: Path) -> dict:
 
 MARKERS = """
 import json, time, pylsl
-from experiment_app.lsl import clock_offset
-from experiment_app.markers import MarkerStream
+from experiment_app.markers.lsl import clock_offset
+from experiment_app.markers.stream import MarkerStream
 from experiment_app.run_folder import Run
 from protocols.record import TrialBegun, PageShown
 
@@ -84,7 +84,7 @@ def test_a_marker_arrives_with_the_flip_time_of_what_it_announces(tmp_path):
 GAZE = """
 import json, time, pylsl
 from experiment_app.gaze.stream import GazeStream
-from experiment_app.lsl import clock_offset
+from experiment_app.markers.lsl import clock_offset
 from protocols.gaze import GazeSettings
 
 info = pylsl.StreamInfo("tracker", "Gaze", 4, 250.0, "float32", "tracker-1")

@@ -11,10 +11,10 @@ from scipy import stats
 
 from analysis import analyse, anova
 from experiment_app.loop import run_session
-from experiment_app.observer import SimulatedParticipant, draw_observer
-from experiment_app.simulate import simulate
+from experiment_app.simulated.observer import SimulatedParticipant, draw_observer
+from experiment_app.simulated.simulate import simulate
 from experiment_app.windows.undrawn import UndrawnWindow
-from protocols.design import default_seed
+from protocols.orders.design import default_seed
 from protocols.plan import make_plan
 from protocols.record import Record, TrialRecord
 from protocols.session import begin

@@ -8,7 +8,7 @@ import pytest
 from analysis.recorded.journal import read_study
 from experiment_app.command import run
 from experiment_app.errors import UsageError
-from experiment_app.film import write_film
+from experiment_app.pictures.film import write_film
 from experiment_app.run_folder import participant_runs
 from stimuli.methods.errors import MethodError
 from stimuli.methods.styles import default_styles, store_style

@@ -7,9 +7,9 @@ import re
 
 import pytest
 
-from experiment_app.check import checked_study, expected_minutes
-from experiment_app.short_study import short_study
-from protocols.design import make_trials
+from experiment_app.commands.check import checked_study, expected_minutes
+from experiment_app.commands.short_study import short_study
+from protocols.orders.design import make_trials
 from protocols.study_file import shipped_studies
 
 

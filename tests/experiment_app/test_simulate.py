@@ -8,8 +8,8 @@ from statistics import mean
 import pytest
 
 from experiment_app.errors import UsageError
-from experiment_app.observer import draw_observer
-from experiment_app.simulate import simulate
+from experiment_app.simulated.observer import draw_observer
+from experiment_app.simulated.simulate import simulate
 from protocols.study_file import parse_study, read_study
 from tests.experiment_app.sessions import opened, play
 from tests.protocols.studies import changed, shipped_text, short, study

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from experiment_app.behaviour import Observer
 from experiment_app.loop import run_session
-from experiment_app.observer import SimulatedParticipant, draw_observer
 from experiment_app.run_folder import journal_lines
 from experiment_app.scene import Page
-from experiment_app.simulate import simulate
+from experiment_app.simulated.behaviour import Observer
+from experiment_app.simulated.observer import SimulatedParticipant, draw_observer
+from experiment_app.simulated.simulate import simulate
 from experiment_app.staging import stage, view_scene
 from protocols.events import Clicked, KeyDown, Shown
 from protocols.plan import TrialStep, make_plan
@@ -169,7 +169,7 @@ def test_the_question_is_drawn_in_the_participants_words():
 
 
 def test_an_adjustment_has_neither_question_nor_strip():
-    from protocols.task import View
+    from protocols.tasks.task import View
 
     scene = view_scene(edited("walk_ratio").study, View())
     assert (scene.page, scene.strip) == (None, 0.0)

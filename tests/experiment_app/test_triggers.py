@@ -10,10 +10,10 @@ import types
 
 import pytest
 
-from experiment_app import triggers
 from experiment_app.command import run
 from experiment_app.errors import RunError, UsageError
-from experiment_app.triggers import Triggering, open_line, trigger_line, triggering
+from experiment_app.markers import triggers
+from experiment_app.markers.triggers import Triggering, open_line, trigger_line, triggering
 from protocols.record import Ended, Paused, Resumed, TrialBegun, TriggerSent
 
 

@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from experiment_app.film import condition_of, walking
+from experiment_app.pictures.film import condition_of, walking
 from experiment_app.render.cameras import AIM, HEADINGS, place_camera
 from experiment_app.render.renderer import Renderer
 from experiment_app.render.street_model import HOUSES_AT, KERB_HEIGHT, STRETCH, street_side

@@ -9,10 +9,10 @@ import pandas as pd
 import pytest
 
 from analysis.planned_analysis import analyse
-from experiment_app.check import checked_study
-from experiment_app.simulate import simulate
+from experiment_app.commands.check import checked_study
+from experiment_app.simulated.simulate import simulate
 from experiment_app.staging import staged
-from protocols.design import make_trials
+from protocols.orders.design import make_trials
 from protocols.setting import value_of
 from stimuli.actors import load_actor
 

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from experiment_app import withdrawal
 from experiment_app.command import run
 from experiment_app.errors import UsageError
-from experiment_app.participants import places_given_back
+from experiment_app.participants import withdrawal
+from experiment_app.participants.arrivals import places_given_back
+from experiment_app.participants.withdrawal import plan_withdrawal
 from experiment_app.run_folder import participant_runs
-from experiment_app.withdrawal import plan_withdrawal
 from protocols.record import decode_line
 from tests.experiment_app.sessions import opened, play
 

@@ -6,7 +6,7 @@ from functools import cache
 
 from pydantic import TypeAdapter
 
-from protocols.order import Order
+from protocols.orders.order import Order
 from protocols.study import Study
 from protocols.study_file import StudyFile, parse_study, read_study
 

@@ -11,12 +11,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protocols.adaptive import after_response, begin_tracks, placed
 from protocols.condition import read_condition
-from protocols.design import make_trials
-from protocols.order_mistakes import order_mistakes
-from protocols.quest_plus import quest_plus, rise
-from protocols.staircase import Staircase, fewest_trials, reversal_mean
+from protocols.mistakes.order_mistakes import order_mistakes
+from protocols.orders.adaptive import after_response, begin_tracks, placed
+from protocols.orders.design import make_trials
+from protocols.orders.quest_plus import quest_plus, rise
+from protocols.orders.staircase import Staircase, fewest_trials, reversal_mean
 from tests.protocols.studies import ordered, study
 
 ANSWERS = [bool(a) for a in (1, 1, 0, 1, 1, 1, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1, 0, 1)]

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protocols.adjustment import AdjustmentTask, AdjustmentTrial, Stage, begin
 from protocols.events import FocusLost, KeyDown, KeyUp, Shown
 from protocols.stimulus import Walk
+from protocols.tasks.adjustment import AdjustmentTask, AdjustmentTrial, Stage, begin
 
 TASK = AdjustmentTask(minimum=80.0, maximum=120.0, rate=10.0, minimum_looking_time=1.0)
 

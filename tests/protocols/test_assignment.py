@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protocols.assignment import Arrival, counts, group_of, place_in_group, place_of
-from protocols.consistency import inconsistencies
-from protocols.order_mistakes import order_mistakes
+from protocols.mistakes.consistency import inconsistencies
+from protocols.mistakes.order_mistakes import order_mistakes
+from protocols.orders.assignment import Arrival, counts, group_of, place_in_group, place_of
 from protocols.plan import make_plan
 from protocols.setting import value_of
 from protocols.study import Participants

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protocols.choice import ChoiceTask, ChoiceTrial, begin
-from protocols.design import Trial
 from protocols.events import KeyDown, Shown
-from protocols.showing import Showing
-from protocols.sides import balanced_orders
+from protocols.orders.design import Trial
 from protocols.stimulus import Walk
-from protocols.task import Setup
+from protocols.tasks.choice import ChoiceTask, ChoiceTrial, begin
+from protocols.tasks.showing import Showing
+from protocols.tasks.sides import balanced_orders
+from protocols.tasks.task import Setup
 
 KEYS = {"first": "left", "second": "right", "replay": "r", "break": "b"}
 SIDE_BY_SIDE = Showing()

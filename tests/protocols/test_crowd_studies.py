@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from protocols.consistency import inconsistencies
+from protocols.mistakes.consistency import inconsistencies
 from protocols.plan import TrialStep, make_plan, walks_of
 from protocols.study_file import StudyFileError, parse_study, read_study
 

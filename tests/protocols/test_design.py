@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protocols.design import conditions, default_seed, make_trials, practice_trials
+from protocols.orders.design import conditions, default_seed, make_trials, practice_trials
 from tests.protocols.studies import ordered, study
 
 
@@ -77,7 +77,7 @@ def test_default_seeds_differ_between_participants_and_runs():
     [("random", "abf23ea96750b829"), ("blocked", "aa76dd71984f8aca"), ("sequential", "380cc16790c56585")],
 )
 def test_the_orders_of_the_first_released_version_are_kept_for_ever(kind, digest):
-    # recorded with version 0.1.0 of protocols/design.py before squares and limits existed
+    # recorded with version 0.1.0 of protocols/orders/design.py before squares and limits existed
     trials = make_trials(ordered(study(), kind=kind), 5)
     text = json.dumps([[t.number, t.block, t.repetition, dict(t.levels)] for t in trials])
     assert hashlib.sha256(text.encode()).hexdigest()[:16] == digest

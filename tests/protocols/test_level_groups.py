@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from protocols.consistency import inconsistencies
+from protocols.mistakes.consistency import inconsistencies
 from protocols.study_file import parse_study
 from tests.protocols.studies import changed
 

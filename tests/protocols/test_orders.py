@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from protocols.design import make_trials, square_row, square_rows
-from protocols.feasibility import order_limits_mistakes
-from protocols.latin import balanced_latin_square, latin_square
-from protocols.limits import Limit, limited_order
-from protocols.order_mistakes import order_mistakes
+from protocols.mistakes.order_mistakes import order_mistakes
+from protocols.orders.design import make_trials, square_row, square_rows
+from protocols.orders.feasibility import order_limits_mistakes
+from protocols.orders.latin import balanced_latin_square, latin_square
+from protocols.orders.limits import Limit, limited_order
 from tests.protocols.studies import ordered, study
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from experiment_app.command import run
-from protocols.placeholders import unknown_placeholders
+from protocols.mistakes.placeholders import unknown_placeholders
 from protocols.study_file import parse_study, shipped_studies
 from tests.protocols.studies import changed, edited
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from protocols.condition import COMPARISONS
-from protocols.possible import Span, condition_mistakes
+from protocols.mistakes.possible import Span, condition_mistakes
 from tests.protocols.studies import edited
 
 COLUMNS = {
@@ -73,7 +73,7 @@ def test_the_verdict_on_a_scale_is_that_of_trying_all_its_points(minimum, steps,
 
 
 def test_an_answer_outside_the_scale_is_refused_before_anyone_sits_down():
-    from protocols.consistency import inconsistencies
+    from protocols.mistakes.consistency import inconsistencies
 
     study = edited(
         "fourier_naturalness",

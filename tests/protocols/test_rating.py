@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from protocols.events import Clicked, FocusLost, KeyDown, KeyUp, Shown
-from protocols.rating import RatingTask, RatingTrial, begin
-from protocols.showing import Showing
 from protocols.stimulus import Walk
-from protocols.task import Scale, Setup
+from protocols.tasks.rating import RatingTask, RatingTrial, begin
+from protocols.tasks.showing import Showing
+from protocols.tasks.task import Scale, Setup
 
 KEYS = {"lower": "left", "raise": "right", "confirm": "enter", "replay": "r", "break": "b"}
 POINTS = Scale(0.0, 4.0, 1.0, "not realistic", "as natural as the original")

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from protocols.consistency import inconsistencies
 from protocols.events import Clicked, Closed, FocusLost, KeyDown, KeyUp, Saved, Shown, Typed
+from protocols.mistakes.consistency import inconsistencies
 from protocols.plan import TrialStep, make_plan
 from protocols.record import Ended, Key, TrialRecord
 from protocols.resuming import Progress, remaining

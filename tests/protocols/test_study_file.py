@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from protocols.consistency import inconsistencies
+from protocols.mistakes.consistency import inconsistencies
 from protocols.study_file import StudyFileError, find_study, parse_study, read_study, shipped_studies
 from tests.protocols.studies import changed, shipped_text
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from experiment_app.check import checked_study
-from protocols.consistency import inconsistencies
+from experiment_app.commands.check import checked_study
+from protocols.mistakes.consistency import inconsistencies
 from protocols.study_file import StudyFileError, parse_study, read_study
 
 

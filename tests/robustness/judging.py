@@ -21,7 +21,7 @@ def study_verdict(path: Path) -> str:
 
     Raises AssertionError when a refusal does not name file, line and column, and whatever else goes wrong.
     """
-    from experiment_app.check import checked_study, summary
+    from experiment_app.commands.check import checked_study, summary
     from protocols.plan import make_plan
 
     try:
@@ -37,7 +37,7 @@ def study_verdict(path: Path) -> str:
 
 
 def _group(study):  # type: ignore[no-untyped-def]
-    from protocols.assignment import group_of
+    from protocols.orders.assignment import group_of
 
     return group_of(study, 1)
 
@@ -56,7 +56,7 @@ def journal_verdict(data: Path, study: str, participant: str, out: Path) -> str:
     from analysis.exports.exporting import export
     from analysis.recorded.journal import read_study
     from experiment_app.opening import unfinished_run
-    from experiment_app.participants import participant_number
+    from experiment_app.participants.arrivals import participant_number
     from experiment_app.run_folder import progress
 
     verdicts = []

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from experiment_app.loop import run_session
-from experiment_app.observer import SimulatedParticipant, draw_observer
 from experiment_app.opening import open_new
+from experiment_app.simulated.observer import SimulatedParticipant, draw_observer
 from experiment_app.windows.offscreen import OffscreenWindow
 from protocols.session import begin
 from protocols.study_file import parse_study

@@ -64,7 +64,7 @@ def test_travelling_joints_go_at_the_wanted_speed_and_stance_feet_stay():
 @pytest.mark.slow
 def test_the_documentations_table_is_what_the_command_measures():
     """The table of docs/actors.md, made by `gaitlab actor table`: every figure of two of its lines."""
-    from experiment_app.actor_pages import delivered_lines
+    from experiment_app.pictures.actor_pages import delivered_lines
 
     lines = (ROOT / "docs" / "actors.md").read_text(encoding="utf-8").splitlines()
     made = delivered_lines(delivered_table(list(people()), frequencies=(80.0, 110.0)))

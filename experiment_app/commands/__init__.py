@@ -1,0 +1,1 @@
+"""What the gaitlab command's subcommands do; heavy imports stay inside them."""

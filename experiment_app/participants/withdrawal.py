@@ -1,0 +1,93 @@
+"""Takes a participant out of a study: journals, exports and reports; only a free place in the order stays.
+
+The order of steps is such that a kill between any two of them leaves nothing that the same command would not finish.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from experiment_app.journal import append_line
+from experiment_app.participants.arrivals import WITHDRAWN, header_of, journals, places_given_back, unknown_participant
+from experiment_app.participants.derived import Derived, derived
+from experiment_app.run_folder import JOURNAL, check_participant, lock
+from protocols.record import Withdrawn, encode_line
+
+LEAVING = ".withdrawing-sub-"
+"""Start of the name that a participant's folder has between the first and the last step."""
+
+
+@dataclass(frozen=True)
+class Withdrawal:
+    """What a withdrawal will touch.
+
+    folder: DATA/<study>; person: the participant's folder, there or half removed; files: how many it holds.
+    made: exports and reports that are made again from those who stay.
+    """
+
+    folder: Path
+    participant: str
+    person: Path
+    files: int
+    made: tuple[Derived, ...]
+
+
+def plan_withdrawal(folder: Path, participant: str) -> Withdrawal:
+    """What a withdrawal will touch; raises UsageError when there is no such participant or their run is going on."""
+    check_participant(participant)
+    data = folder / "sourcedata"
+    person = data / f"sub-{participant}"
+    if not person.is_dir():
+        person = data / f"{LEAVING}{participant}"  # a withdrawal that was killed half-way is finished
+    if not person.is_dir():
+        raise unknown_participant(folder, participant)
+    for journal in person.glob(f"run-*/{JOURNAL}"):
+        with open(journal, "rb") as file:
+            lock(file, journal)
+    files = sum(path.is_file() for path in person.rglob("*"))
+    return Withdrawal(folder, participant, person, files, tuple(derived(folder)))
+
+
+def withdraw(plan: Withdrawal, remake: Callable[[Derived], None], say: Callable[[str], None]) -> bool:
+    """Carries a withdrawal out; False when something made from the participant's data could not be made again.
+
+    remake: makes one export or report again from the journals that are left, or removes it where none is; its
+    problem is told, not raised.
+    """
+    place = _place(plan)
+    leaving = plan.person.with_name(f"{LEAVING}{plan.participant}")
+    if plan.person != leaving:
+        os.rename(plan.person, leaving)
+    if place is not None and place not in places_given_back(plan.folder):
+        with open(plan.folder / WITHDRAWN, "ab", buffering=0) as file:
+            append_line(file, encode_line(Withdrawn(place)))
+            os.fsync(file.fileno())
+    shutil.rmtree(leaving)
+    say(f"Removed participant {plan.participant} from {plan.folder / 'sourcedata'} (files: {plan.files}).")
+    if place is not None:
+        say(f"Place {place} in the order of arrival is free again; the next new participant takes it.")
+    whole, nobody = True, not journals(plan.folder)
+    done = "Removed, since nobody is left in it" if nobody else f"Made again without participant {plan.participant}"
+    for made in plan.made:
+        try:
+            remake(made)
+            say(f"{done}: {made.sentence}.")
+        except Exception as error:  # whatever it is, the others must still be made again
+            whole = False
+            why = str(error).rstrip(".")
+            say(f"NOT made again: {made.sentence} ({why}). It may still hold {plan.participant}: delete it.")
+    say("Copies made by hand, backups and anything published are out of reach; ask whoever keeps them.")
+    return whole
+
+
+def _place(plan: Withdrawal) -> int | None:
+    """The participant's place in the order of arrival; None when no header can be read any more."""
+    for journal in sorted(plan.person.glob(f"run-*/{JOURNAL}")):
+        header = header_of(journal)
+        if header is not None:
+            return int(header["participant_number"])
+    return None

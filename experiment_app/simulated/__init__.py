@@ -1,0 +1,1 @@
+"""Simulated participants: the same trials, loop and journal as real ones."""

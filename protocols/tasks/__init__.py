@@ -1,0 +1,1 @@
+"""Tasks as pure state machines (adjustment, choice, rating), and what a study file says of each."""
