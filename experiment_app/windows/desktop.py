@@ -90,8 +90,9 @@ class DesktopWindow:
         try:
             self._times = open_key_times(keyboard, x_display)
             self._waiting: Waiting = WaitingForX(x_display) if x_display else WaitingInGlfw()
-            pixels = glfw.get_framebuffer_size(self._handle)
-            self._drawing = Drawing(self._handle, pixels, self._pixel_ratio(), samples, self._waiting.wake)
+            glfw.set_framebuffer_size_callback(self._handle, self._on_size)
+            self._pixels = glfw.get_framebuffer_size(self._handle)
+            self._drawing = Drawing(self._handle, self._pixels, self._pixel_ratio(), samples, self._waiting.wake)
         except UsageError:
             glfw.terminate()
             raise
@@ -134,7 +135,7 @@ class DesktopWindow:
         info = self._drawing.info
         return {
             "window": "desktop",
-            "pixels": list(glfw.get_framebuffer_size(self._handle)),
+            "pixels": list(self._pixels),
             "pixel_ratio": self._pixel_ratio(),
             **display_facts(self._handle, self._monitor),
             "period_s": round(self._pacing.period, 6),
@@ -180,9 +181,8 @@ class DesktopWindow:
         self._set_cursor(scene)
         predicted = self._pacing.display_time(self.now())
         swap_at = None if self._pacing.throttled else predicted + self.origin
-        size = glfw.get_framebuffer_size(self._handle)
         watched = self._watch is not None and scene.visible
-        self._drawing.begin(Order(scene, size, self._pixel_ratio(), swap_at, self._patch, watched))
+        self._drawing.begin(Order(scene, self._pixels, self._pixel_ratio(), swap_at, self._patch, watched))
         while (drawn := self._drawing.seen()) is None:
             self._receive(0.1)
         flip = self._flipped(drawn, predicted)
@@ -221,6 +221,10 @@ class DesktopWindow:
         return (left + x * across - own_left) / max(width, 1), (top + y * down - own_top) / max(height, 1)
 
     # Inside
+
+    def _on_size(self, _handle: Any, width: int, height: int) -> None:
+        """The picture's size in pixels as it was last reported: asked of a window that is gone, it would be rubbish."""
+        self._pixels = (width, height)
 
     def _pixel_ratio(self) -> float:
         return float(glfw.get_window_content_scale(self._handle)[0])
@@ -320,5 +324,5 @@ class DesktopWindow:
         if self._scene.page is None:
             return None
         width, height = glfw.get_window_size(self._handle)
-        pixels = glfw.get_framebuffer_size(self._handle)
-        return self._drawing.renderer.hit(self._scene.page, x * pixels[0] / width, y * pixels[1] / height)
+        across, down = self._pixels
+        return self._drawing.renderer.hit(self._scene.page, x * across / width, y * down / height)
