@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import shlex
 from pathlib import Path
@@ -55,6 +56,15 @@ def test_links_and_pictures_lead_somewhere(path):
     for target in re.findall(r"\]\(([^)#]+)\)", path.read_text(encoding="utf-8")):
         if "://" not in target:
             assert (path.parent / target).exists(), target
+
+
+def test_the_page_about_the_code_says_of_every_folder_what_the_folder_says_of_itself():
+    page = (ROOT / "docs" / "code.md").read_text(encoding="utf-8")
+    rooms = [ROOT / room for room in ("protocols", "stimuli", "experiment_app", "analysis")]
+    for path in (path for room in rooms for path in room.rglob("__init__.py")):
+        said = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8")))
+        assert said, path
+        assert said.splitlines()[0] in page, path
 
 
 def test_the_page_of_studies_names_all_with_their_participants_and_trials():
