@@ -28,7 +28,7 @@ from experiment_app.render.crowd_pass import CROWD, FAR, CrowdPass
 from experiment_app.render.renderer import Renderer
 from experiment_app.render.shadow_map import ShadowMap
 from experiment_app.scene import Camera, Crowd, Ground, Scene, Walker
-from experiment_app.timing import is_software
+from experiment_app.timing.facts import is_software
 from experiment_app.walkers import drawn_walkers
 from experiment_app.windows.offscreen import offscreen_context
 from stimuli.crowds.poses import many_matrices
