@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import sys
 import tempfile
 import zipfile
 from dataclasses import asdict, dataclass
@@ -18,8 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from stimuli.actors import Actor, ActorError, Person, people
-from stimuli.blend import CycleTable
+from stimuli.actors import Actor, ActorError, Person, actor_on, people
 from stimuli.blend_tree import Branch, Leaf, Tree
 from stimuli.bodies.body import Body
 from stimuli.bodies.known import load_body
@@ -27,6 +25,7 @@ from stimuli.gait import Gait
 from stimuli.gait_model import COEFFICIENTS, SIGNALS, WalkCurves
 from stimuli.retarget import Figure, scaled, walk_cycle
 from stimuli.skeleton import Floats
+from stimuli.user_folder import user_folder
 
 VERSION = 2
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
@@ -75,14 +74,7 @@ class StoredActor:
 
 def library_folder() -> Path:
     """Where imported actors are kept: GAITLAB_ACTORS, or the folder of this user's data."""
-    given = os.environ.get("GAITLAB_ACTORS")
-    if given:
-        return Path(given)
-    if sys.platform == "win32":
-        return Path(os.environ.get("APPDATA", Path.home())) / "gaitlab" / "actors"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Application Support" / "gaitlab" / "actors"
-    return Path(os.environ.get("XDG_DATA_HOME", Path.home() / ".local" / "share")) / "gaitlab" / "actors"
+    return user_folder("actors")
 
 
 def imported_names(library: Path | None = None) -> tuple[str, ...]:
@@ -153,21 +145,7 @@ def actor_of(stored_actor: StoredActor, body: Body | None = None) -> Actor:
     cycles = [
         walk_cycle(figure, cycle.walk, cycle.speed, cycle.step_frequency, calm=True) for cycle in stored_actor.cycles
     ]
-    return Actor(
-        name=person.name,
-        sex=person.sex,
-        age=person.age,
-        height=person.height,
-        weight=person.weight,
-        comfort_speed=person.comfort_speed,
-        captured_walk_ratio=person.walk_ratio,
-        walk_ratio_source=person.walk_ratio_source,
-        body=worn.name,
-        figure=figure,
-        table=CycleTable.of(cycles),
-        tree=_tree(stored_actor),
-        provenance=stored_actor.provenance,
-    )
+    return actor_on(worn, person, figure, cycles, _tree(stored_actor), stored_actor.provenance)
 
 
 def _tree(actor: StoredActor) -> Tree:

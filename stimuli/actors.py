@@ -11,6 +11,7 @@ alike. Their 25 cycles are made once when an actor is loaded. Knows no window, n
 from __future__ import annotations
 
 import csv
+from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache
@@ -164,6 +165,27 @@ def _is_default(name: str) -> bool:
     return name in people() and name not in imported_names()
 
 
+def actor_on(
+    body: Body, person: Person, figure: Figure, cycles: Sequence[WalkCycle], tree: Tree, provenance: str
+) -> Actor:
+    """A person as the walker of a study: the cycles made for the figure, which is the body at the person's height."""
+    return Actor(
+        name=person.name,
+        sex=person.sex,
+        age=person.age,
+        height=person.height,
+        weight=person.weight,
+        comfort_speed=person.comfort_speed,
+        captured_walk_ratio=person.walk_ratio,
+        walk_ratio_source=person.walk_ratio_source,
+        body=body.name,
+        figure=figure,
+        table=CycleTable.of(cycles),
+        tree=tree,
+        provenance=provenance,
+    )
+
+
 @cache
 def _default_actor(name: str) -> Actor:
     person = people()[name]
@@ -177,21 +199,7 @@ def _make(person: Person, body: Body) -> Actor:
     cycles = [
         _cycle(figure, model, person, manner, speed, frequency) for frequency in METRONOME for speed in CYCLE_SPEEDS
     ]
-    return Actor(
-        name=person.name,
-        sex=person.sex,
-        age=person.age,
-        height=person.height,
-        weight=person.weight,
-        comfort_speed=person.comfort_speed,
-        captured_walk_ratio=person.walk_ratio,
-        walk_ratio_source=person.walk_ratio_source,
-        body=body.name,
-        figure=figure,
-        table=CycleTable.of(cycles),
-        tree=metronome_tree(METRONOME, CYCLE_SPEEDS),
-        provenance=MODELLED,
-    )
+    return actor_on(body, person, figure, cycles, metronome_tree(METRONOME, CYCLE_SPEEDS), MODELLED)
 
 
 def _cycle(

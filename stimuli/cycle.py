@@ -28,7 +28,7 @@ from stimuli.rotations import (
     to_exponential,
     yaw,
 )
-from stimuli.skeleton import JOINTS, PARENTS
+from stimuli.skeleton import JOINTS, role_parents
 
 Floats = NDArray[np.floating]
 
@@ -240,17 +240,6 @@ def _ground(clip: Clip, positions: Floats) -> float:
     }
     below = {joint for joint, parent in enumerate(clip.parents) if parent in feet}
     return float(positions[:, sorted(feet | below), 1].min())
-
-
-def role_parents(joints: tuple[str, ...]) -> tuple[int, ...]:
-    """Index of each joint's nearest present parent; -1 for the first."""
-    parents = []
-    for joint in joints:
-        above = PARENTS[JOINTS.index(joint)]
-        while above >= 0 and JOINTS[above] not in joints:
-            above = PARENTS[above]
-        parents.append(joints.index(JOINTS[above]) if above >= 0 else -1)
-    return tuple(parents)
 
 
 def cycle_pose(cycle: Cycle) -> tuple[Floats, Floats]:

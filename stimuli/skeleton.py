@@ -38,6 +38,17 @@ PARENTS: tuple[int, ...] = (-1, 0, 1, 2, 3, 2, 5, 6, 7, 2, 9, 10, 11, 0, 13, 14,
 """Index of each joint's parent in JOINTS; -1 for the root."""
 
 
+def role_parents(joints: tuple[str, ...]) -> tuple[int, ...]:
+    """Index of each joint's nearest present parent; -1 for the first."""
+    parents = []
+    for joint in joints:
+        above = PARENTS[JOINTS.index(joint)]
+        while above >= 0 and JOINTS[above] not in joints:
+            above = PARENTS[above]
+        parents.append(joints.index(JOINTS[above]) if above >= 0 else -1)
+    return tuple(parents)
+
+
 @dataclass(frozen=True, eq=False)
 class Skeleton:
     """Joint offsets of one person in the rest pose, in which every joint's local rotation is the identity.

@@ -64,7 +64,20 @@ class ListOrder(Part):
         return bool(self.at_most_in_a_row or self.at_least_apart or self.repeats_at_least_apart)
 
 
-class StaircaseRule(Part):
+class UpDownRule(Part):
+    """What all staircases have: where each track begins, and when it ends."""
+
+    start: list[Number] | None = Field(
+        None, min_length=1, max_length=8, description="First level of each interleaved staircase; the last if left out."
+    )
+    reversals: Stop | None = Field(
+        None,
+        description="A track ends after so many reversals, as 8 (Levitt 1971), or after `repetitions` trials, what "
+        "comes first; if left out, every track has all its trials.",
+    )
+
+
+class StaircaseRule(UpDownRule):
     """A transformed up-down staircase (Levitt 1971) on the levels in the order of the file."""
 
     kind: Literal["staircase"]
@@ -73,30 +86,14 @@ class StaircaseRule(Part):
     steps: list[Limit] = Field(
         default_factory=lambda: [1], min_length=1, description="Levels per step: one more entry after each reversal."
     )
-    start: list[Number] | None = Field(
-        None, min_length=1, max_length=8, description="First level of each interleaved staircase; the last if left out."
-    )
-    reversals: Stop | None = Field(
-        None,
-        description="A track ends after so many reversals, as 8 (Levitt 1971), or after `repetitions` trials, what "
-        "comes first; if left out, every track has all its trials.",
-    )
 
 
-class WeightedRule(Part):
+class WeightedRule(UpDownRule):
     """A weighted up-down staircase (Kaernbach 1991): every yes is a step down, every no a step up of another size."""
 
     kind: Literal["weighted"]
     down: Limit = Field(1, description="Levels down after yes.")
     up: Limit = Field(3, description="Levels up after no; up / (up + down) is the share of yes it settles at.")
-    start: list[Number] | None = Field(
-        None, min_length=1, max_length=8, description="First level of each interleaved staircase; the last if left out."
-    )
-    reversals: Stop | None = Field(
-        None,
-        description="A track ends after so many reversals, as 8 (Levitt 1971), or after `repetitions` trials, what "
-        "comes first; if left out, every track has all its trials.",
-    )
 
 
 class QuestPlusRule(Part):

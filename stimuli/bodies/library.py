@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import re
-import sys
 import tempfile
 from pathlib import Path
 
 from stimuli.bodies.point_light import FIGURES
 from stimuli.body_files.errors import BodyError
+from stimuli.user_folder import user_folder
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
 MATCHED, MISMATCHED = "matched", "mismatched"
@@ -23,14 +23,7 @@ TAKEN = ("woman", "man", MATCHED, MISMATCHED, OWN_BUILD, *FIGURES)
 
 def library_folder() -> Path:
     """Where imported bodies are kept: GAITLAB_BODIES, or the folder of this user's data."""
-    given = os.environ.get("GAITLAB_BODIES")
-    if given:
-        return Path(given)
-    if sys.platform == "win32":
-        return Path(os.environ.get("APPDATA", Path.home())) / "gaitlab" / "bodies"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Application Support" / "gaitlab" / "bodies"
-    return Path(os.environ.get("XDG_DATA_HOME", Path.home() / ".local" / "share")) / "gaitlab" / "bodies"
+    return user_folder("bodies")
 
 
 def imported_names() -> tuple[str, ...]:

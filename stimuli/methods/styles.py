@@ -4,7 +4,7 @@ The names are those of the eleven styles of the Mockey database that Tilmanne & 
 shipped, so these are made, not captured: each changes the mean posture and the range of some signals of the gait model
 by the amounts of styles.csv, and the legs follow by the same inverse kinematics as any walk. They stand for styles of
 different content (posture, range, width, tempo), not for what an actor performs; like every walk of the model the left
-step mirrors the right one, so the drunken style has no two different steps. Captured styles are imported as actors.
+step mirrors the right one, so the drunken style has no two different steps. Captured ones can be imported.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from stimuli.motion_files.joint_centres import joint_centres, pelvis_axes, unit
 from stimuli.motion_files.marker_fitting import Body, fitted, nearest_rotation
 from stimuli.motion_files.markers import MarkerRecording, filled, seen_part
 from stimuli.rotations import continuous, from_matrix, inverse, multiply
-from stimuli.skeleton import JOINTS, PARENTS
+from stimuli.skeleton import JOINTS, role_parents
 
 Floats = NDArray[np.floating]
 
@@ -100,16 +100,6 @@ def _check(recording: MarkerRecording, places: list[str]) -> None:
         )
 
 
-def _parents(joints: tuple[str, ...]) -> tuple[int, ...]:
-    parents = []
-    for joint in joints:
-        above = PARENTS[JOINTS.index(joint)]
-        while above >= 0 and JOINTS[above] not in joints:
-            above = PARENTS[above]
-        parents.append(joints.index(JOINTS[above]) if above >= 0 else -1)
-    return tuple(parents)
-
-
 def _axes(up: Floats, left: Floats) -> Floats:
     """(T, 3, 3) with columns left, up, forward: up kept, left made square to it."""
     up = unit(up)
@@ -171,7 +161,7 @@ def _skeleton(
     joints: tuple[str, ...], centres: dict[str, Floats], paths: dict[str, Floats], guess: dict[str, Floats]
 ) -> _Skeleton:
     """Offsets and marker places as their means over all frames, seen from the first guess of the axes."""
-    parents = _parents(joints)
+    parents = role_parents(joints)
     offsets = np.zeros((len(joints), 3))
     for index, parent in enumerate(parents):
         if parent >= 0:
