@@ -1,4 +1,4 @@
-"""`gaitlab gallery`: every picture of docs/gallery.md, made anew. Drawn off-screen, always the same."""
+"""`gaitlab gallery`: every picture of docs/gallery.md and README's trial, made anew off-screen, always the same."""
 
 from __future__ import annotations
 
@@ -31,6 +31,7 @@ WIDE = (1200, 675)
 HALF = (600, 400)
 SMALL = (240, 340)
 TRIAL = (600, 338)
+SCREEN = (1280, 720)
 CLOSE = Camera("three_quarter", 5.0, 1.3, 24.0)
 PHASES = (0.02, 0.18, 0.34, 0.5)
 
@@ -84,6 +85,7 @@ def make_gallery(folder: Path) -> Iterator[Path]:
     rest = [np.hstack([studies[-1], np.zeros_like(studies[-1])])] if len(studies) % 2 else []
     save_picture(np.vstack([*across, *rest]), folder / "studies.png")
     yield folder / "studies.png"
+    yield row("trial.png", [_trial("walk_ratio", 0.8)], SCREEN)
     yield _parts(folder / "body-parts.png")
     context.release()
 
@@ -147,10 +149,10 @@ def _crowd(size: int) -> Scene:
     return Scene((), Camera("elevated", 34.0, 10.0, 40.0, 180.0), "street", crowd=Crowd(size, seed=6, seconds=2.0))
 
 
-def _trial(name: str) -> Scene:
-    """A trial of a shipped study as its participants see it, 1.2 s after it began: the first condition."""
+def _trial(name: str, seconds: float = 1.2) -> Scene:
+    """A trial of a shipped study as its participants see it so long after it began: the first condition."""
     study = read_study(name).study
-    return walking(study, condition_of(study, []), 1.2)
+    return walking(study, condition_of(study, []), seconds)
 
 
 def _parts(path: Path) -> Path:

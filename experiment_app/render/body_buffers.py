@@ -38,7 +38,7 @@ FINISHES: dict[str, tuple[float, float, float, float]] = {
     "eye": (0.0, 0.0, 1.0, 0.0),
     "iris": (0.0, 0.0, 1.0, 0.0),
     "pupil": (0.0, 0.0, 1.0, 0.0),
-    "hair": (0.0, 0.22, 0.45, HAIR),
+    "hair": (0.0, 0.22, 0.3, HAIR),
     "brow": (0.0, 0.0, 0.2, 0.0),
     "lash": (0.0, 0.0, 0.0, 0.0),
     "shirt": (0.0, 0.16, 0.15, KNITTED),
@@ -102,7 +102,7 @@ def packed(
         part["weights"] = surface.weights
         part["occlusion"] = surface.occlusion
         part["joints"] = surface.joints
-        part["material"] = material
+        part["material"] = material if surface.blush is None else material + surface.blush
         triangles.append(np.asarray(surface.triangles, np.uint32) + np.uint32(first))
         first += len(surface.positions)
     return vertices, np.concatenate(triangles)

@@ -12,6 +12,8 @@ from stimuli.skeleton import Floats, Skeleton
 
 Integers = NDArray[np.integer]
 
+MOST_BLUSH = 0.45
+
 
 @dataclass(frozen=True, eq=False)
 class Surface:
@@ -21,6 +23,7 @@ class Surface:
     colour:    (3,) linear RGB in [0, 1].
     roughness: 0 (mirror) .. 1 (chalk).
     positions: (V, 3) m, bind pose; normals: (V, 3) unit length; occlusion: (V,) 0 (dark) .. 1 (open sky).
+    blush:     (V,) share of green and blue light that blood under the skin takes, 0 .. MOST_BLUSH; None is none.
     joints:    (V, 4) int, indices into skeleton JOINTS; weights: (V, 4), not negative, rows sum to 1.
     triangles: (T, 3) int, counter-clockwise seen from outside.
     picture:   (H, W, 4) uint8 sRGB and alpha, multiplied by the colour; None is the colour alone.
@@ -45,6 +48,7 @@ class Surface:
     alpha_cutoff: float = 0.5
     alpha_factor: float = 1.0
     double_sided: bool = False
+    blush: Floats | None = None
 
 
 @dataclass(frozen=True, eq=False)

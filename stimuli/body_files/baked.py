@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from stimuli.bodies.body import Body, Surface
+from stimuli.bodies.body import MOST_BLUSH, Body, Surface
 from stimuli.body_files.accessors import item, read_accessor
 from stimuli.body_files.container import Container, read_container
 from stimuli.body_files.errors import BodyError
@@ -120,4 +120,13 @@ def _surface(container: Container, primitive: dict[str, Any], to_metres: Floats,
         joints=joints.astype(np.int64),
         weights=weights / total,
         triangles=triangles.reshape(-1, 3),
+        blush=_blush(colour),
     )
+
+
+def _blush(colour: Floats) -> Floats | None:
+    """(V,) of skin, from how much less green than red a vertex shows; None where all are grey."""
+    red, green = colour[:, 0].astype(np.float64), colour[:, 1].astype(np.float64)
+    if np.array_equal(red, green):
+        return None
+    return np.asarray(np.clip(1 - green / np.maximum(red, 1e-3), 0, MOST_BLUSH))

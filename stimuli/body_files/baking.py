@@ -2,6 +2,7 @@
 
 Nodes are called lod0, lod1, lod2; a haircut is its own node, "lod0 hair:bob", so that any viewer can hide it.
 Positions are 16-bit fractions of a 2 m box; the inverse bind matrices bring them back to metres.
+Vertex colours are how much of the sky is seen; on skin, green and blue are less where blood shows (`Surface.blush`).
 """
 
 from __future__ import annotations
@@ -121,8 +122,10 @@ def _primitive(surface: Surface, block: _Block, material: int) -> dict[str, Any]
         "max": [int(x) for x in positions[:, :3].max(axis=0)],
     }
     normals = _padded(np.round(np.clip(surface.normals, -1, 1) * 127).astype(np.int8))
-    grey = np.round(np.clip(surface.occlusion, 0, 1) * 255).astype(np.uint8)
-    colour = np.column_stack([grey, grey, grey, np.full(count, 255, np.uint8)])
+    open_sky = np.clip(surface.occlusion, 0, 1)
+    pale = open_sky if surface.blush is None else open_sky * (1 - surface.blush)
+    light = np.column_stack([open_sky, pale, pale, np.ones(count)])
+    colour = np.round(255 * light).astype(np.uint8)
     joints = np.where(surface.weights > 0, surface.joints, 0).astype(np.uint8)
     vertices = 34962
     attributes = {

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stimuli.bodies.body import Body, Integers, Surface
+from stimuli.body_generator.blush import blush
 from stimuli.body_generator.face import face_patches
 from stimuli.body_generator.fields import Field
 from stimuli.body_generator.figure import Figure
@@ -208,6 +209,7 @@ def _surface(figure: Figure, name: str, pieces: list[Piece], heat: Heat) -> Surf
         joints=joints,
         weights=weights,
         triangles=triangles,
+        blush=blush(figure, positions) if name == "skin" else None,
     )
 
 

@@ -25,7 +25,7 @@ _BREAKS = ((1.6, 0.5), (5.6, 2.1), (10.8, 1.0))  # cm above the leg's end, turn
 def shirt_folds(figure: Figure, cloth: Field) -> Field:
     """Folds of a T-shirt: from the arm-pits, over the waist, flutes above the hem, on the sleeves."""
     rng = np.random.default_rng(SEED)
-    strength = 1.25 if figure.female else 1.5
+    strength = 1.35 if figure.female else 1.5
     folds: list[Fold] = []
     for side in (1, -1):
         for curve, width, height in [
@@ -73,7 +73,7 @@ def _armpit(figure: Figure, side: int) -> list[tuple[Curve, float, float]]:
         depth = 8.5 * front
         for drop, run in ((-1, 0.42), (-6, 0.5), (-12, 0.62)):
             middle = _point(side * sx * 0.8, sy - 10 + drop * 0.7, depth)
-            found.append(((start, middle, _point(side * sx * run, sy - 8 + drop, depth + 1.5 * front)), 1.3, 0.38))
+            found.append(((start, middle, _point(side * sx * run, sy - 8 + drop, depth + 1.5 * front)), 1.2, 0.48))
         over = (
             _point(side * (sx + 2), sy - 5, 5 * front),
             _point(side * sx * 0.82, sy - 5, 8 * front),
@@ -92,7 +92,7 @@ def _waist(figure: Figure, side: int, rng: np.random.Generator) -> list[tuple[Cu
         edge = side * wide * 0.98
         front = (_point(edge, y + 1.5, k - 2), _point(0.8 * side * wide, y - 1, 8), _point(reach, y - 2.5, 11))
         back = (_point(edge, y + 1.5, -3 - k), _point(0.75 * side * wide, y, -9), _point(reach, y - 1.5, -11))
-        found += [(front, 1.35, 0.45), (back, 1.4, 0.6)]
+        found += [(front, 1.25, 0.5), (back, 1.3, 0.65)]
     return found
 
 
@@ -105,7 +105,7 @@ def _flutes(figure: Figure, side: int) -> list[tuple[Curve, float, float]]:
             _point(side * x, hem + 6, z),
             _point(side * x * 1.03, hem - 2, z * 1.04),
         )
-        found.append((curve, 1.5, 0.5))
+        found.append((curve, 1.5, 0.38))
     return found
 
 

@@ -89,8 +89,12 @@ def face_patches(head: Field, frame: HeadFrame, female: bool, fineness: float = 
 
     s = np.linspace(0, 1, count(22))
     brow_x = 1.35 + s * 3.95
-    arch = 165.30 + (0.50 if female else 0.25) * np.sin(np.pi * np.clip(s * 0.80, 0, 1)) ** 1.2 - 0.35 * s**3
-    fat = (0.34 if female else 0.48) * np.clip(0.45 + s / 0.25, 0, 1) * (1 - 0.80 * s**1.8)
+    arch = (
+        165.30
+        + (0.50 if female else 0.25) * np.sin(np.pi * np.clip(s * 0.80, 0, 1)) ** 1.2
+        - (0.35 if female else 0.45) * s**3
+    )
+    fat = (0.34 if female else 0.43) * np.clip(0.45 + s / 0.25, 0, 1) * (1 - 0.80 * s**1.8)
     rough = 0.05 * rng.random((2, len(s)))
     strip(
         "brow",
@@ -121,7 +125,7 @@ def _lips(head: Field, frame: HeadFrame, female: bool, count: Callable[[float], 
     u = np.linspace(-1, 1, count(23))
     x = half * u
     fade = (1 - np.abs(u) ** 2.2) ** 0.8
-    middle = 156.88 + 0.05 * np.cos(2 * np.pi * u) + (0.20 if female else 0.27) * u**2 + 0.16 * u**4
+    middle = 156.88 + 0.05 * np.cos(2 * np.pi * u) + (0.20 if female else 0.36) * u**2 + 0.16 * u**4
     bow = 0.66 if female else 0.48
     top = middle + bow * fade * (
         1 - 0.16 * np.exp(-((u / 0.13) ** 2)) + 0.10 * np.exp(-(((np.abs(u) - 0.24) / 0.16) ** 2))
@@ -132,7 +136,9 @@ def _lips(head: Field, frame: HeadFrame, female: bool, count: Callable[[float], 
     patches = []
     for low, high, dark in ((middle, top, v[::-1]), (bottom, middle, v)):
         points = np.stack([np.repeat(x[:, None], rows, 1), low[:, None] + (high - low)[:, None] * v], axis=-1)
-        shade = np.repeat(1 - 0.62 * dark[None, :] ** 5, len(x), axis=0) * (1 - 0.25 * np.abs(u[:, None]) ** 6)
+        shade = np.repeat(1 - (0.62 if female else 0.5) * dark[None, :] ** 5, len(x), axis=0) * (
+            1 - 0.25 * np.abs(u[:, None]) ** 6
+        )
         patches.append(_pressed("lip", points, 1, 0.06, shade, head, frame))
     return patches
 

@@ -115,13 +115,13 @@ def _shirt_solid(figure: Figure, trousers: Field, hem: float) -> Field:
         chest = both_sides(ellipsoid(figure.bust, (6.2, 6.4, 4.9)), 3.0)
         chest_blend = 6.0
     else:
-        chest = both_sides(ellipsoid((8.2, shoulder[1] - 10.5, 6.4), (8.4, 5.6, 3.9)), 2.5)
+        chest = both_sides(ellipsoid((8.2, shoulder[1] - 10.5, 6.4), (8.4, 6.4, 3.2)), 2.5)
         chest_blend = 6.0
     worn = join(trunk, (mirrored(yoke), 7.0), (chest, chest_blend), (mirrored(blade), 4.0), (mirrored(sleeve), 5.5))
     end = figure.shirt[0][0]
 
     def field(points: Floats) -> Floats:
-        margin = 0.65 - 0.22 * np.maximum(points[:, 1] - hem - 2, 0)
+        margin = 0.55 - 0.22 * np.maximum(points[:, 1] - hem - 2, 0)
         over = smooth_min(worn(points), trousers(points) - margin, 3.0)
         return smooth_max(over, end - points[:, 1], 0.15)
 

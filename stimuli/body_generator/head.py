@@ -48,8 +48,8 @@ _SECTIONS_MAN = (
     (174.4, 0, 0, 3.1, 3.1, 4.3, 3.4, 2.0),
     (174.95, 0, 0, 1.0, 1.0, 1.4, 1.1, 2.0),
 )
-_JAW_MAN = {153.8: 0.96, 155.5: 0.95, 157.2: 0.95, 159.2: 0.965, 161.2: 0.98}
-_JAW_WOMAN = {151.8: 0.80, 152.6: 0.80, 153.8: 0.81, 155.5: 0.82, 157.2: 0.87, 159.2: 0.90, 161.2: 0.955}
+_JAW_MAN = {153.8: 0.96, 155.5: 0.95, 157.2: 1.0, 159.2: 1.02, 161.2: 0.99}
+_JAW_WOMAN = {151.8: 0.80, 152.6: 0.80, 153.8: 0.80, 155.5: 0.81, 157.2: 0.95, 159.2: 0.985, 161.2: 0.985}
 
 
 @dataclass(frozen=True)
@@ -142,7 +142,7 @@ def _sections(female: bool) -> Field:
 def _face(female: bool) -> Field:
     skull = _sections(female)
     strong = 0.0 if female else 1.0
-    jaw = mirrored(ellipsoid((3.8 + 0.7 * strong, 156.9, 2.0), (0.9 + 0.4 * strong, 2.2, 2.6)))
+    jaw = mirrored(ellipsoid((3.1 + 1.4 * strong, 157.2, 2.0), (0.9 + 0.4 * strong, 2.2, 2.6)))
     chin = ellipsoid((0, 153.75, 7.55), (1.75 + 0.5 * strong, 1.45, 1.35))
     muzzle = ellipsoid((0, 157.0, 7.0), (3.0, 2.3, 2.35))
     cheek = mirrored(ellipsoid((4.5, 161.0, 5.7), (1.9, 1.6, 1.7)))
@@ -150,7 +150,7 @@ def _face(female: bool) -> Field:
     hollow_fill = mirrored(ellipsoid((3.35 + 0.45 * strong, 157.4, 4.9), (1.35 + 0.1 * strong, 2.8, 2.3)))
     jaw_line = mirrored(
         capsule(
-            (3.5 + 0.7 * strong, 155.9, 3.2), (0.9 + 0.7 * strong, 153.7, 6.9), 0.8 + 0.1 * strong, 0.7 + 0.2 * strong
+            (3.3 + 0.9 * strong, 155.9, 3.2), (0.9 + 0.7 * strong, 153.7, 6.9), 0.8 + 0.1 * strong, 0.7 + 0.2 * strong
         )
     )
     brow = mirrored(ellipsoid((2.6, 165.45, 8.0), (1.9 + 0.3 * strong, 0.62 + 0.12 * strong, 0.62 + 0.3 * strong)))

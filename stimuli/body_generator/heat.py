@@ -19,15 +19,17 @@ from stimuli.skeleton import JOINTS, Floats
 
 HEAT = 1.6  # strength of the pull of the nearest bone; larger = narrower transitions at the joints
 NEIGHBOURS = 6
-SHOULDER, ELBOW, KNEE = 0.7, 2.0, 1.15
-# sharpness: above 1 a hinge bends in a narrower band and keeps more of its volume, below 1 it is rounder
+SHOULDER, ELBOW, KNEE, KNEE_BACK = 0.7, 2.0, 1.15, 4.5
+BEHIND = (1.0, -4.0)  # cm forwards of the hip: where a hinge is as sharp as in front, and as behind
+# sharpness in front and behind: above 1 a hinge bends in a narrower band, below 1 it is rounder. The hollow of a bent
+# knee is a crease between two straight legs of cloth; a wide band pulls it in as if it were pinched.
 _HINGES = tuple(
-    (JOINTS.index(side + upper), JOINTS.index(side + lower), sharpness)
+    (JOINTS.index(side + upper), JOINTS.index(side + lower), front, back)
     for side in ("left", "right")
-    for upper, lower, sharpness in (
-        ("Shoulder", "UpperArm", SHOULDER),
-        ("UpperArm", "LowerArm", ELBOW),
-        ("UpperLeg", "LowerLeg", KNEE),
+    for upper, lower, front, back in (
+        ("Shoulder", "UpperArm", SHOULDER, SHOULDER),
+        ("UpperArm", "LowerArm", ELBOW, ELBOW),
+        ("UpperLeg", "LowerLeg", KNEE, KNEE_BACK),
     )
 )
 MIRROR_JOINT = np.array(
@@ -70,9 +72,10 @@ def weights_at(heat: Heat, points: Floats) -> tuple[Integers, Floats]:
     from point to point (plain "best four" tears visible seams).
     """
     dense = 0.5 * (_interpolated(heat, points) + _interpolated(heat, points * (-1, 1, 1))[:, MIRROR_JOINT])
-    for upper, lower, sharpness in _HINGES:
+    behind = np.clip((BEHIND[0] - points[:, 2:]) / (BEHIND[0] - BEHIND[1]), 0, 1)
+    for upper, lower, front, back in _HINGES:
         pair = dense[:, [upper, lower]]
-        sharp = pair**sharpness
+        sharp = pair ** (front + (back - front) * behind)
         dense[:, [upper, lower]] = (
             pair.sum(axis=1, keepdims=True) * sharp / np.maximum(sharp.sum(axis=1, keepdims=True), 1e-30)
         )

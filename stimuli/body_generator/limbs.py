@@ -19,9 +19,9 @@ from stimuli.body_generator.polygons import settled
 from stimuli.skeleton import Floats
 
 # place across the palm (towards the thumb), length, radius, bend at the knuckle in degrees; index to little finger
-_FINGERS = ((2.75, 7.3, 0.84, 22.0), (0.95, 8.0, 0.87, 27.0), (-0.9, 7.5, 0.83, 33.0), (-2.6, 5.9, 0.74, 40.0))
+_FINGERS = ((2.75, 7.3, 0.84, 30.0), (0.95, 8.0, 0.87, 33.0), (-0.9, 7.5, 0.83, 37.0), (-2.6, 5.9, 0.74, 42.0))
 _PHALANGES = (0.46, 0.30, 0.24)  # share of a finger's length
-_CURL = (0.0, 32.0, 20.0)  # degrees added at each finger joint
+_CURL = (0.0, 34.0, 24.0)  # degrees added at each finger joint
 
 
 def arm(figure: Figure) -> Field:
@@ -56,7 +56,8 @@ def hand(figure: Figure) -> Field:
         (2.5, 0.1, 0, 3.5, 3.4, 1.45, 1.75, 2.5),
         (5.5, 0.1, 0, 4.0, 3.9, 1.3, 1.55, 2.6),
         (8.5, 0.1, 0, 4.05, 3.9, 1.15, 1.3, 2.6),
-        (10.0, 0.1, 0, 3.8, 3.6, 0.95, 1.05, 2.6),
+        (10.0, 0.1, 0, 3.8, 3.6, 0.95, 0.95, 2.5),
+        (10.8, 0.1, 0, 3.3, 3.1, 0.6, 0.5, 2.4),
     ]
     rows = [
         (s * k, cu * k, 0, a * k * slim, b * k * slim, c * k * slim, d * k * slim, n)
@@ -71,7 +72,7 @@ def hand(figure: Figure) -> Field:
         base = at(9.3 - 0.12 * abs(place - 0.9) ** 1.4, place, 0.1)
         angle, tip = np.radians(bend), base
         r = radius * k * slim
-        fan = 0.015 * place
+        fan = -0.02 * place  # towards each other, as in a hand at rest
         for i, (share, curl) in enumerate(zip(_PHALANGES, _CURL, strict=True)):
             angle += np.radians(curl)
             direction = np.cos(angle) * along + np.sin(angle) * inwards + fan * thumb_side

@@ -109,7 +109,7 @@ def parts_of(figure: Figure) -> tuple[tuple[Part, ...], Field]:
             paint=beard_shadow(figure),
             soft=0.3,
         ),
-        part("arm", "skin", left_arm, arm_low, arm_high, 0.32, (1450, 480, 140), True),
+        part("arm", "skin", left_arm, arm_low, arm_high, 0.32, (1436, 480, 140), True),
         part(
             "shirt",
             "shirt",

@@ -18,11 +18,11 @@ from stimuli.body_generator.polygons import Mesh, settled
 from stimuli.skeleton import Floats
 
 WIDTH = 0.28  # cm
-LIFT = 0.08  # cm above the cloth
+LIFT = 0.13  # cm above the cloth
 DARK = 0.52  # of the light that the cloth beside it gets
 STEP = 0.5  # cm between points of a line before those that lie straight are dropped
 STRAIGHT = 0.035  # cm
-_CANDIDATES = 16  # triangles near a point that it may lie on
+_CANDIDATES = 64  # triangles near a point that it may lie on
 
 Line = Floats
 """(N, 3) cm, points of a seam."""

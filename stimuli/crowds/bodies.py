@@ -38,7 +38,7 @@ def _coarse(name: str, hair: str, level: int, finer: dict[str, Surface]) -> tupl
     first = f"{name}/{hair}/{level}/"
     names = [surface for surface in finer if f"{first}{surface}/positions" in stored]
     return tuple(
-        replace(finer[surface], **{array: _as_used(stored[f"{first}{surface}/{array}"]) for array in KEPT})
+        replace(finer[surface], blush=None, **{array: _as_used(stored[f"{first}{surface}/{array}"]) for array in KEPT})
         for surface in names
     )
 

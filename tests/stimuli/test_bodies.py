@@ -57,6 +57,19 @@ def volume(positions, triangles):
     return float(np.sum(a * np.cross(b, c)) / 6)
 
 
+def reach(positions, triangles, start, direction):
+    """How far from the start the outermost triangle is that a ray meets (Moeller & Trumbore 1997)."""
+    a, b, c = (positions[triangles[:, i]] for i in range(3))
+    across = np.cross(direction, c - a)
+    area = np.sum((b - a) * across, axis=1)
+    area = np.where(np.abs(area) > 1e-12, area, np.inf)
+    u = np.sum((start - a) * across, axis=1) / area
+    turned = np.cross(start - a, b - a)
+    v = turned @ direction / area
+    hit = (u >= 0) & (v >= 0) & (u + v <= 1) & np.isfinite(area)
+    return float((np.sum((c - a) * turned, axis=1) / area)[hit].max())
+
+
 def surface(body, name, level=0):
     return next(s for s in body.levels[level] if s.name == name)
 
@@ -204,6 +217,34 @@ def test_a_knee_bent_by_60_degrees_keeps_its_volume(name):
     around = np.ptp(ring[:, 0]) * np.ptp(ring[:, 2]) * np.pi / 4 * 0.20  # 20 cm of leg about the knee
     loss = (volume(s.positions, s.triangles) - volume(bent, s.triangles)) / around
     assert abs(loss) < 0.12
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_hollow_of_a_knee_bent_by_60_degrees_is_not_pinched(name):
+    """Two straight legs of cloth of radius r that meet at 60 degrees have their crease r / cos(30) behind the knee."""
+    body = load_body(name)
+    s = surface(body, "trousers")
+    bent, _ = skin(s, posed(body, leftLowerLeg=60))
+    knee = body.skeleton.positions[JOINTS.index("leftLowerLeg")]
+    straight = reach(s.positions, s.triangles, knee, np.array([0.0, 0, -1]))
+    crease = reach(bent, s.triangles, knee, np.array([0, np.sin(np.radians(30)), -np.cos(np.radians(30))]))
+    assert crease == pytest.approx(straight / np.cos(np.radians(30)), rel=0.12)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_cheeks_ears_and_knuckles_are_redder_than_foreheads_and_forearms(name):
+    body = load_body(name)
+    s = surface(body, "skin")
+    assert s.blush is not None
+    high = s.positions[:, 1] > body.stature - 0.05
+    cheek = (s.positions[:, 2] > 0.05) & (np.abs(s.positions[:, 1] - body.stature + 0.15) < 0.015)
+    wrist = body.skeleton.positions[JOINTS.index("leftHand")]
+    arm = wrist - body.skeleton.positions[JOINTS.index("leftLowerArm")]
+    beyond = (s.positions - wrist) @ arm / np.linalg.norm(arm)
+    left = s.positions[:, 0] > 0.2
+    assert s.blush[cheek].max() > 0.12 > s.blush[high].max() + 0.08
+    assert s.blush[left & (beyond > 0.08)].mean() > 0.06 > 0.02 > s.blush[left & (np.abs(beyond + 0.08) < 0.04)].max()
+    assert surface(body, "shirt").blush is None
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -30,6 +30,7 @@ def small_surface(name: str, seed: int) -> Surface:
         joints=rng.integers(0, 21, (40, 4)),
         weights=weights / weights.sum(axis=1, keepdims=True),
         triangles=rng.integers(0, 40, (30, 3)),
+        blush=rng.uniform(0, 0.4, 40) if name == "skin" else None,
     )
 
 
@@ -56,6 +57,10 @@ def test_a_body_survives_baking_within_the_quantisation():
         assert np.allclose(new.normals, old.normals, atol=0.01)
         assert np.allclose(new.occlusion, old.occlusion, atol=0.003)
         assert np.allclose(new.weights, old.weights, atol=0.01)
+        if old.blush is None:
+            assert new.blush is None
+        else:
+            assert np.allclose(new.occlusion * new.blush, old.occlusion * old.blush, atol=0.005)
         assert np.array_equal(np.where(old.weights > 0, old.joints, 0), new.joints)
         assert np.array_equal(new.triangles, old.triangles)
         assert np.allclose(new.colour, old.colour, atol=1e-4)

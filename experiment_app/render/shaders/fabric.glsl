@@ -40,13 +40,18 @@ vec3 raised(vec3 normal, vec3 gradient, vec3 place, vec3 world) {
 vec3 fabric(float kind, vec3 place, vec3 world, vec3 normal, inout vec3 albedo) {
     if (close_up == 0.0 || kind == 0.0) return normal;
     float pixel = max(length(dFdx(place)), length(dFdy(place)));  // m
-    if (kind > 3.5) {  // strands, which hang
-        float seen = clamp(1.5 - 220.0 * pixel, 0.0, 1.0);
-        vec3 thin = vec3(520.0, 26.0, 520.0);
-        vec4 strand = noise(place * thin);
-        float tress = noise(place * vec3(130.0, 14.0, 130.0)).w;
-        albedo *= 1.0 + seen * (0.75 * (strand.w - 0.5) + 0.5 * (tress - 0.5));
-        return raised(normal, seen * 0.0006 * thin * strand.xyz, place, world);
+    if (kind > 3.5) {  // strands, which run from the crown and hang
+        vec2 out_from_crown = place.xz - vec2(0.0, -0.01);
+        float radius = max(length(out_from_crown), 0.004);
+        vec2 round_it = out_from_crown * (0.09 / radius);
+        vec3 lie = vec3(round_it.x, place.y - radius, round_it.y);
+        float seen = clamp(1.5 - 450.0 * pixel, 0.0, 1.0);
+        float strand = noise(lie * vec3(620.0, 9.0, 620.0)).w - 0.5;
+        vec3 wide = vec3(150.0, 7.0, 150.0);
+        vec4 tress = noise(lie * wide);
+        float wide_seen = clamp(1.5 - 150.0 * pixel, 0.0, 1.0);
+        albedo *= 1.0 + 0.5 * seen * strand + 0.45 * wide_seen * (tress.w - 0.5);
+        return raised(normal, 0.0012 * wide_seen * wide * tress.xyz, lie, world);
     }
     if (kind > 2.5) {
         float seen = clamp(1.5 - 120.0 * pixel, 0.0, 1.0);
@@ -54,12 +59,12 @@ vec3 fabric(float kind, vec3 place, vec3 world, vec3 normal, inout vec3 albedo) 
         return normal;
     }
     float grain = noise(place * vec3(260.0, 190.0, 260.0)).w - 0.5;
-    albedo *= 1.0 + 0.16 * grain * clamp(1.6 - 350.0 * pixel, 0.0, 1.0);
+    albedo *= 1.0 + 0.08 * grain * clamp(1.6 - 350.0 * pixel, 0.0, 1.0);
     if (kind > 1.5) {
         float thread = sin(1300.0 * (place.y + 0.8 * (place.x + place.z)));
         albedo *= 1.0 + 0.10 * thread * clamp(1.4 - 700.0 * pixel, 0.0, 1.0);
     }
     vec3 wide = vec3(17.0, 26.0, 17.0);
     vec3 gradient = wide * noise(place * wide + 7.0).xyz;
-    return raised(normal, 0.0042 * gradient * clamp(1.5 - 100.0 * pixel, 0.0, 1.0), place, world);
+    return raised(normal, 0.0016 * gradient * clamp(1.5 - 100.0 * pixel, 0.0, 1.0), place, world);
 }

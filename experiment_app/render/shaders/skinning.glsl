@@ -14,7 +14,7 @@ uniform int first_walker;
 #endif
 
 // By fours, as software drivers read attributes fastest.
-in vec4 position_material;  // m in the bind pose; the material's number
+in vec4 position_material;  // m in the bind pose; the material's number plus what blood takes, less than 0.5
 in vec4 weights;
 in uvec4 joints;
 

@@ -9,6 +9,7 @@
 #ifndef CROWD
 #include "fabric.glsl"
 in vec3 bind_place;  // m, where on the body
+in float blush;      // share of green and blue light that blood under the skin takes
 #endif
 
 const int MOST_MATERIALS = 24;
@@ -79,6 +80,7 @@ void main() {
     vec3 to_eye = normalize(eye - world_position);
     vec3 normal = normalize(world_normal);
 #ifndef CROWD
+    albedo.gb *= 1.0 - blush;
     normal = fabric(finish.w, bind_place, world_position, normal, albedo);
 #endif
 #ifdef TEXTURED

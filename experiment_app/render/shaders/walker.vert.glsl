@@ -15,6 +15,7 @@ flat out int look;
 flat out vec2 drawn_in;     // of the screen's noise
 #else
 out vec3 bind_place;         // m, where on the body in its bind pose
+out float blush;             // share of green and blue light that blood under the skin takes
 #endif
 #ifdef TEXTURED
 in vec2 picture_at;
@@ -37,6 +38,7 @@ void main() {
     drawn_in = instance.yz;
 #else
     bind_place = bound.xyz;
+    blush = position_material.w - float(surface);
 #endif
 #ifdef TEXTURED
     picture_place = picture_at;
