@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import pkgutil
 import re
 import shlex
 from pathlib import Path
@@ -49,6 +50,31 @@ def _apply(path: Path, change: str) -> None:
             key = line.split(":")[0]
             text = re.sub(rf"^{key}:.*$", line, text, count=1, flags=re.M)
     path.write_text(text, encoding="utf-8")
+
+
+ROOMS = ("protocols", "stimuli", "experiment_app", "analysis", "tests")
+
+
+def _docstrings(path: Path) -> str:
+    named = (ast.Module, ast.ClassDef, ast.FunctionDef)
+    nodes = [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, named)]
+    return "\n".join(ast.get_docstring(node) or "" for node in nodes)
+
+
+def test_modules_named_in_the_pages_and_in_docstrings_exist():
+    texts = {path: path.read_text(encoding="utf-8") for path in PAGES}
+    texts |= {path: _docstrings(path) for folder in ROOMS for path in (ROOT / folder).rglob("*.py")}
+    for path, text in texts.items():
+        for name in re.findall(rf"(?<![\w./])(?:{'|'.join(ROOMS)})(?:\.[a-zA-Z_]\w*)+", text):
+            assert _exists(name), f"{path.relative_to(ROOT)} names {name}"
+
+
+def _exists(name: str) -> bool:
+    try:
+        pkgutil.resolve_name(name)
+    except (ImportError, AttributeError):
+        return False
+    return True
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda p: p.name)

@@ -1,6 +1,6 @@
 """Step frequency over the time of an adjustment trial, rebuilt exactly from the key events of the journal.
 
-The law is the task's (protocols.adjustment): while one of the two keys is held, step frequency moves at `rate`
+The law is the task's (protocols.tasks.adjustment): while one of the two keys is held, step frequency moves at `rate`
 steps/min per second and stops at the ends of the range. So the course is a chain of straight lines, and its corners
 are all of it.
 """

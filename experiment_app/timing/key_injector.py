@@ -1,6 +1,6 @@
 """A program that presses keys at exact times through the X server's test extension; for measurements and tests.
 
-`python -m experiment_app.key_injector` reads one line of JSON, a list of [keysym, down (1 or 0), s since the one
+`python -m experiment_app.timing.key_injector` reads one line of JSON, a list of [keysym, down (1 or 0), s since the one
 before], presses and releases the keys, and prints the moments just before each as JSON (s, `time.perf_counter`). It is
 a process of its own, so that the program that is measured cannot delay it.
 """

@@ -1,7 +1,7 @@
 """What every task's part of a study file answers, so that plan, session, check and simulation know no task.
 
-A new task is three things: a trial as a value (protocols.task.TaskTrial), a part of the study file that begins it,
-named in protocols.study.Task, and what a simulated observer does in it (experiment_app.behaviour).
+A new task is three things: a trial as a value (protocols.tasks.task.TaskTrial), a part of the study file that begins
+it, named in protocols.study.Task, and what a simulated observer does in it (experiment_app.simulated.behaviour).
 """
 
 from __future__ import annotations
