@@ -24,7 +24,8 @@ class Source:
 
     The axes are those of the file, written as "+Y" or "-X"; forward is "" where nothing moves or points.
     names is the table of joint names that fitted ("CMU", "Mixamo", ... or "topology"); residual is m, the root mean
-    square distance of markers from the skeleton fitted to them, nan where there are no markers.
+    square distance of markers from the skeleton fitted to them, nan where there are no markers; left_out are the frames
+    of the file before the first and after the last one of the clip, in which markers of feet or pelvis are not seen.
     """
 
     format: str
@@ -34,6 +35,7 @@ class Source:
     names: str
     file_rate: float  # Hz as written in the file, before it was set to the whole rate meant
     residual: float = float("nan")
+    left_out: tuple[int, int] = (0, 0)
 
 
 @dataclass(frozen=True, order=True)

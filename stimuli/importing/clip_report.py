@@ -16,18 +16,19 @@ from stimuli.motion_files.reading import read_clip
 def clip_report(path: Path) -> dict[str, Any]:
     """Everything known of a clip under the names of `gaitlab clip --json`.
 
-    Times are in s from the first frame. What a motion does not hold is None, and a warning says why.
-    Raises MotionFileError when the file cannot be read.
+    Frames are those of the file, times in s from its first frame. What a motion does not hold is None, and a warning
+    says why. Raises MotionFileError when the file cannot be read.
     """
     clip = read_clip(path)
     events, measures, warnings = _measured(clip)
     source = clip.source
+    frames, start = clip.frame_count + sum(source.left_out), source.left_out[0] / clip.rate
     return {
         "file": str(path),
         "format": source.format,
-        "frames": clip.frame_count,
+        "frames": frames,
         "rate": clip.rate,
-        "duration_s": round(clip.duration, 6),
+        "duration_s": round((frames - 1) / clip.rate, 6),
         "joints": len(clip.joints),
         "joint_names": list(clip.joints),
         "roles": {role: clip.joints[index] for role, index in clip.roles.items()},
@@ -35,8 +36,8 @@ def clip_report(path: Path) -> dict[str, Any]:
         "unit_to_m": source.unit_to_m,
         "up": source.up,
         "forward": source.forward,
-        "heel_strikes": _times(events, "strike"),
-        "toe_offs": _times(events, "off"),
+        "heel_strikes": _times(events, "strike", start),
+        "toe_offs": _times(events, "off", start),
         "steps_used": measures.steps_used if measures else 0,
         "speed_m_s": _number(measures.speed if measures else None),
         "step_frequency_steps_min": _number(measures.gait.step_frequency if measures else None),
@@ -113,9 +114,9 @@ def _normalised(measures: GaitMeasures | None, length: float | None) -> dict[str
     return {"length_m": _number(length)} | {key: _number(value) for key, value in asdict(gait).items()}
 
 
-def _times(events: tuple[FootEvent, ...], kind: str) -> dict[str, list[float]]:
+def _times(events: tuple[FootEvent, ...], kind: str, start: float) -> dict[str, list[float]]:
     return {
-        side: [round(event.time, 4) for event in events if event.side == side and event.kind == kind]
+        side: [round(event.time + start, 4) for event in events if event.side == side and event.kind == kind]
         for side in ("left", "right")
     }
 

@@ -81,7 +81,8 @@ def measure_markers(recording: MarkerRecording) -> GaitMeasures:
 def seen_part(recording: MarkerRecording, places: Sequence[str]) -> MarkerRecording:
     """The recording from the first to the last frame in which all these places are seen, events moved along.
 
-    Places that are never seen are not asked for. A recording without such a frame is returned as it is.
+    Places that are never seen are not asked for. A recording without such a frame is returned as it is. What was left
+    out is told in the source and in a warning.
     """
     points = recording.points[:, [recording.places[place] for place in places]]
     seen = np.asarray(np.all(np.isfinite(points), axis=-1))
@@ -91,7 +92,19 @@ def seen_part(recording: MarkerRecording, places: Sequence[str]) -> MarkerRecord
     first, last = int(frames[0]), int(frames[-1])
     start, end = first / recording.rate, last / recording.rate
     events = tuple(replace(e, time=e.time - start) for e in recording.events if start <= e.time <= end)
-    return replace(recording, points=recording.points[first : last + 1], events=events)
+    left_out = first, recording.frame_count - 1 - last
+    return replace(
+        recording,
+        points=recording.points[first : last + 1],
+        events=events,
+        source=replace(recording.source, left_out=left_out),
+        warnings=(*recording.warnings, _left_out_warning(recording.frame_count, *left_out)),
+    )
+
+
+def _left_out_warning(frames: int, first: int, last: int) -> str:
+    parts = [f"the {where} {count}" for where, count in (("first", first), ("last", last)) if count]
+    return f"{' and '.join(parts)} of {frames} frames are left out, as markers of pelvis, knees or feet are unseen there"
 
 
 def filled(path: Floats) -> Floats:

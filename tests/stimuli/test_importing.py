@@ -100,6 +100,25 @@ def test_a_clip_of_markers_tells_its_steps_its_gait_without_units_and_its_residu
 
 
 @needs_captures
+def test_frames_without_markers_of_the_feet_are_told_and_times_count_from_the_files_first_frame():
+    """Gait.c3d holds 487 frames (manifest); its heel marker stands still between strike and toe-off as told."""
+    pytest.importorskip("ezc3d")
+    from stimuli.motion_files.c3d import read_c3d
+
+    path = MOCAP / "c3d" / "bmclab" / "Gait.c3d"
+    recording = read_c3d(path)
+    heel = recording.path_of("right_heel")
+    report = clip_report(path)
+    strike, off = report["heel_strikes"]["right"][0], report["toe_offs"]["right"][1]
+    standing = heel[round((strike + 0.15) * 100) : round((off - 0.25) * 100)]
+    assert report["frames"] == 487
+    assert report["duration_s"] == pytest.approx(4.86)
+    assert len(standing) > 10
+    assert np.ptp(standing[:, [0, 2]], axis=0).max() < 0.010  # m: there the foot stands
+    assert any("the first 133 and the last 160 of 487 frames are left out" in note for note in report["warnings"])
+
+
+@needs_captures
 @given(st.data())
 @settings(max_examples=20, deadline=None)
 def test_no_mutation_of_a_clip_leaves_half_an_actor_or_escapes_as_another_error(tmp_path_factory, data):
