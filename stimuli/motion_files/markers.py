@@ -104,7 +104,8 @@ def seen_part(recording: MarkerRecording, places: Sequence[str]) -> MarkerRecord
 
 def _left_out_warning(frames: int, first: int, last: int) -> str:
     parts = [f"the {where} {count}" for where, count in (("first", first), ("last", last)) if count]
-    return f"{' and '.join(parts)} of {frames} frames are left out, as markers of pelvis, knees or feet are unseen there"
+    frames_of = f"{' and '.join(parts)} of {frames} frames"
+    return f"{frames_of} are left out, as markers of pelvis, knees or feet are unseen there"
 
 
 def filled(path: Floats) -> Floats:
