@@ -45,7 +45,7 @@ def understand(container: Container, scene: GltfScene, skin: int, bound: Floats,
     """The person in a scene; `bound` (V, 3) are all its vertices in the bind pose, in the file's scene space."""
     nodes = scene.nodes
     parents = [node.parent for node in nodes]
-    binds = bind_matrices(scene, skin)
+    binds = bind_matrices(scene, skin, where)
     source, roles = _roles(container, scene, skin, binds, where)
     missing = [role for role in NEEDED if role not in roles]
     if missing:
@@ -55,15 +55,26 @@ def understand(container: Container, scene: GltfScene, skin: int, bound: Floats,
     return Humanoid(source, roles, positions, to_person, _carriers(roles, parents))
 
 
-def bind_matrices(scene: GltfScene, skin: int) -> Floats:
+def bind_matrices(scene: GltfScene, skin: int, where: str) -> Floats:
     """(N, 4, 4) where every node stood when the skin was attached, in scene space as the file shows it.
 
     For joints of the skin the inverse of the inverse bind matrix, brought to the scene by the first joint's place;
-    other nodes keep their place relative to their parent.
+    other nodes keep their place relative to their parent. Raises BodyError when a joint's matrix has no inverse.
     """
+    try:
+        return _bind_matrices(scene, skin)
+    except np.linalg.LinAlgError as error:
+        raise BodyError(
+            f"{where}: a joint, or what it hangs on, is scaled to 0; apply scales and export again"
+        ) from error
+
+
+def _bind_matrices(scene: GltfScene, skin: int) -> Floats:
     world = world_matrices(scene.nodes)
     joints, inverse = scene.skins[skin].joints, scene.skins[skin].inverse_binds
     scene_of_bind = world[joints[0]] @ inverse[0]
+    if np.linalg.det(scene_of_bind) == 0:
+        raise np.linalg.LinAlgError("the skin is shrunk to nothing")
     found = {int(j): scene_of_bind @ np.linalg.inv(b) for j, b in zip(joints, inverse, strict=True)}
 
     def bound(index: int) -> Floats:

@@ -16,6 +16,7 @@ from stimuli.body_files.materials import Material, read_materials
 from stimuli.body_files.scene import GltfScene, Primitive, placed_vertices, read_scene
 from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
 
+WITH_WEIGHTS = "export it with its armature and skin weights"
 MOST_MATERIALS = 24  # as the renderer's shaders have room for
 COARSER = re.compile(r"(?i)(^|[_ .-])lod[_ ]?[1-9]")
 """In the names of nodes that show the same body again with fewer triangles."""
@@ -56,7 +57,9 @@ def _person(container: Container, path: Path) -> tuple[Body, Explained]:
     scene = read_scene(container, path.name)
     skin = _main_skin(scene, path.name)
     worn = _worn(scene)
-    binds = bind_matrices(scene, skin)
+    if not worn:
+        raise BodyError(f"{path.name}: its meshes say not which joints move them (JOINTS_0, WEIGHTS_0); {WITH_WEIGHTS}")
+    binds = bind_matrices(scene, skin, path.name)
     bound = [_bound(scene, node, primitive, binds, path.name) for node, primitive in worn]
     everything = np.concatenate([points for _, points in bound])
     person = understand(container, scene, skin, everything, path.name)
@@ -99,7 +102,7 @@ def _main_skin(scene: GltfScene, where: str) -> int:
     """The skin with the most joints among those that are worn."""
     used = {n.skin for n in scene.nodes if n.skin is not None and n.mesh is not None}
     if not used:
-        raise BodyError(f"{where}: no mesh hangs on a skeleton; export it with its armature and skin weights")
+        raise BodyError(f"{where}: no mesh hangs on a skeleton; {WITH_WEIGHTS}")
     return max(sorted(used), key=lambda s: len(scene.skins[s].joints))
 
 

@@ -265,6 +265,8 @@ def _influences(
     if not np.all(np.isfinite(weights)) or np.any(weights < 0):
         raise BodyError(f"{where}: a mesh has weights that are negative or not finite")
     total = weights.sum(axis=1, keepdims=True)
+    if len(total) and not total.any():
+        raise BodyError(f"{where}: all joint weights of a mesh are 0; export the file again with its skin weights")
     weights[total[:, 0] == 0, 0] = 1
     joints[total[:, 0] == 0, 0] = 0
     joints = np.where(weights > 0, joints, 0)

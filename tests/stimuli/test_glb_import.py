@@ -151,6 +151,12 @@ def _only_five_joints(skin):
     skin.update(joints=skin["joints"][:5])
 
 
+def _weights(document, change):
+    for mesh in document["meshes"]:
+        for primitive in mesh["primitives"]:
+            change(primitive["attributes"])
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
@@ -164,6 +170,12 @@ def _only_five_joints(skin):
         (lambda d: d["skins"][0].update(joints=[999]), "joints that do not exist"),
         (lambda d: _only_five_joints(d["skins"][0]), "but its skin has 5; export the file again"),
         (lambda d: d["nodes"][3].update(children=[0]), "each other's parents"),
+        (lambda d: _weights(d, lambda attributes: attributes.pop("WEIGHTS_0")), "say not which joints move them"),
+        (
+            lambda d: _weights(d, lambda a: d["accessors"][a["WEIGHTS_0"]].pop("bufferView", None)),
+            "weights of a mesh are 0",
+        ),
+        (lambda d: [n.update(scale=[0, 0, 0]) for n in d["nodes"]], "is scaled to 0"),
         (lambda d: d["meshes"][0].pop("primitives"), "breaks glTF's own rules"),
     ],
 )
