@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
 
-from experiment_app.commands.check import check_names, checked_study, refuse_mistakes
+from experiment_app.checking.check import check_names, checked_study, refuse_mistakes
 from experiment_app.console.asking import listening
 from experiment_app.console.status_line import status_line
 from experiment_app.console.watching import watched_so_far

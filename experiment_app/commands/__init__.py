@@ -1,1 +1,1 @@
-"""What the gaitlab command's subcommands do; heavy imports stay inside them."""
+"""The gaitlab command's subcommands: what each reads and says; the work is done in other folders."""

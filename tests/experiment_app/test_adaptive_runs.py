@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import pytest
 
-from experiment_app.commands.balance import order_in_words
-from experiment_app.commands.check import summary
+from experiment_app.checking.balance import order_in_words
+from experiment_app.checking.check import summary
 from experiment_app.run_folder import journal_lines, participant_runs
 from protocols.events import Closed
 from protocols.mistakes.consistency import inconsistencies

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from experiment_app.checking.balance import balance, order_in_words, what_participant_sees
 from experiment_app.command import run
-from experiment_app.commands.balance import balance, order_in_words, what_participant_sees
 from experiment_app.errors import UsageError
 from experiment_app.participants.arrivals import participant_number
 from experiment_app.participants.dropping_out import drop_out

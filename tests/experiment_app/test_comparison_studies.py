@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 from analysis.planned_analysis import analyse
-from experiment_app.commands.check import checked_study
+from experiment_app.checking.check import checked_study
 from experiment_app.simulated.behaviour import latent_mean
 from experiment_app.simulated.simulate import simulate
 from protocols.study_file import read_study

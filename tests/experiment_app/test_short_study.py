@@ -7,8 +7,8 @@ import re
 
 import pytest
 
-from experiment_app.commands.check import checked_study, expected_minutes
-from experiment_app.commands.short_study import short_study
+from experiment_app.checking.check import checked_study, expected_minutes
+from experiment_app.demonstration.short_study import short_study
 from protocols.orders.design import make_trials
 from protocols.study_file import shipped_studies
 

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from analysis.planned_analysis import analyse
-from experiment_app.commands.check import checked_study
+from experiment_app.checking.check import checked_study
 from experiment_app.simulated.simulate import simulate
 from experiment_app.staging import staged
 from protocols.orders.design import make_trials

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from experiment_app.commands.check import checked_study
+from experiment_app.checking.check import checked_study
 from protocols.mistakes.consistency import inconsistencies
 from protocols.study_file import StudyFileError, parse_study, read_study
 

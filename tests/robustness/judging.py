@@ -21,7 +21,7 @@ def study_verdict(path: Path) -> str:
 
     Raises AssertionError when a refusal does not name file, line and column, and whatever else goes wrong.
     """
-    from experiment_app.commands.check import checked_study, summary
+    from experiment_app.checking.check import checked_study, summary
     from protocols.plan import make_plan
 
     try:

@@ -45,7 +45,7 @@ def test_a_study_file_cannot_run_code(tmp_path, monkeypatch, tag, capfd):
 )
 def test_a_study_file_cannot_read_outside_its_folder(tmp_path, where, key, line):
     """Names of actors and bodies are looked up among those that exist, never opened as paths."""
-    from experiment_app.commands.check import checked_study
+    from experiment_app.checking.check import checked_study
 
     text = changed((f"  {key}", line.format(f'"{where}"'.replace("\\", "\\\\"))))
     (tmp_path / "s.yaml").write_text(text, encoding="utf-8")

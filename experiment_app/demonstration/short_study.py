@@ -71,7 +71,7 @@ def _parsed(yaml: Any, document: Any) -> StudyFile:
 
 def _tell_the_truth(document: Any, short: StudyFile) -> None:
     """Puts how long the short version takes, and what becomes of its data, into its pages."""
-    from experiment_app.commands.check import expected_minutes
+    from experiment_app.checking.check import expected_minutes
 
     minutes = min(max(round(expected_minutes(short.study)), 1), len(IN_WORDS) - 1)
     values = {"{minutes}": IN_WORDS[minutes], "{seconds}": f"{getattr(short.study.task, 'time_limit', None) or 0:g}"}

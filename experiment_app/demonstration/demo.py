@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from experiment_app.commands.short_study import short_study
+from experiment_app.demonstration.short_study import short_study
 from experiment_app.errors import UsageError
 from experiment_app.live import ScreenOptions, run_live
 from experiment_app.loop import run_session

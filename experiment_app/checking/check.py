@@ -8,8 +8,8 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from experiment_app.commands.balance import balance, likely_seed, order_in_words
-from experiment_app.commands.coverage import coverage_mistakes
+from experiment_app.checking.balance import balance, likely_seed, order_in_words
+from experiment_app.checking.coverage import coverage_mistakes
 from protocols.mistakes.consistency import inconsistencies, referred_factors, settings_of
 from protocols.mistakes.mistake import Mistake, Place
 from protocols.mistakes.placeholders import unknown_placeholders

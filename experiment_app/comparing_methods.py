@@ -1,4 +1,4 @@
-"""`gaitlab compare-methods`: every way of making a walk beside the captured walk. Numbers go to analysis."""
+"""Every way of making a walk beside the captured walk, measured; what the numbers say is analysis's part."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class PersonsWalk:
     cycle: Cycle
 
 
-def compare_methods(
+def compared_methods(
     actors: Sequence[str],
     folder: Path,
     captures: Path | None,

@@ -1,0 +1,1 @@
+"""What a study file will be, before a participant sits down: what is wrong with it, its balance, its length."""
