@@ -1,6 +1,6 @@
 """Mistakes that no single value shows: references to factors that do not exist, levels out of range.
 
-Each check returns Mistakes with their place; knows no actor or body (see experiment_app.commands.check).
+Each check returns Mistakes with their place; knows no actor or body (see experiment_app.checking.check).
 """
 
 from __future__ import annotations
