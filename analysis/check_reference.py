@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analysis.errors import AnalysisError
 from analysis.power.formulas import power_rm_anova
 from analysis.statistics.aligned_ranks import art_anova
 from analysis.statistics.comparisons import pairwise
@@ -158,7 +157,7 @@ def main() -> None:
     """Prints the table for the folder named on the command line."""
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "../shared/stats-reference")
     if not (folder / "15_power.json").is_file():
-        raise AnalysisError(f"{folder} holds no reference files; name the folder stats-reference.")
+        sys.exit(f"{folder} holds no results of R; name the folder that does (stats-reference) after the command.")
     print("| what | values | worst difference from R |\n| --- | --: | --: |")
     for row in worst_differences(folder).itertuples():
         print(f"| {row.what} | {row.values} | {row.worst:.0e} {row.kind} |")

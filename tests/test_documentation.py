@@ -6,6 +6,8 @@ import ast
 import pkgutil
 import re
 import shlex
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -67,6 +69,23 @@ def test_modules_named_in_the_pages_and_in_docstrings_exist():
     for path, text in texts.items():
         for name in re.findall(rf"(?<![\w./])(?:{'|'.join(ROOMS)})(?:\.[a-zA-Z_]\w*)+", text):
             assert _exists(name), f"{path.relative_to(ROOT)} names {name}"
+
+
+@pytest.mark.parametrize(
+    ("command", "says"),
+    [
+        ("analysis.check_reference nowhere", "nowhere holds no results of R; name the folder"),
+        ("stimuli.fitting.gait_model --mocap nowhere", "nowhere has no mocap/REFERENCE_C3D_EVENTS.csv"),
+        ("stimuli.fitting.validation --mocap nowhere", "nowhere has no mocap/REFERENCE_C3D_EVENTS.csv"),
+        ("stimuli.poulaine.fitting nowhere", "is missing; give the folder of the gait tables"),
+        ("tests.benchmarks cups", "there is no benchmark cups; there are: help_text, poses"),
+    ],
+)
+def test_programs_of_the_pages_say_what_is_missing(command, says):
+    ran = subprocess.run([sys.executable, "-m", *command.split()], cwd=ROOT, capture_output=True, text=True)
+    assert ran.returncode != 0
+    assert says in " ".join(ran.stderr.split())
+    assert "Traceback" not in ran.stderr
 
 
 def _exists(name: str) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from importlib.util import find_spec
 from pathlib import Path
 
 from stimuli.body_files.baking import bake
@@ -21,6 +22,9 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="the GLB file to write")
     parser.add_argument("--coarseness", type=float, default=1.0, help="above 1: wider grids, fewer triangles")
     chosen = parser.parse_args()
+    missing = [library for library in ("skimage", "fast_simplification") if find_spec(library) is None]
+    if missing:
+        parser.error(f"making bodies needs {' and '.join(missing)}; install the extra `dev` (`sh setup.sh test` does)")
     body = build(FIGURES[chosen.name], chosen.coarseness, report=print)
     data = bake(body)
     chosen.out.write_bytes(data)

@@ -20,6 +20,7 @@ import numpy as np
 
 from stimuli.fitting import captures, laboratory
 from stimuli.fitting.captures import Walk
+from stimuli.fitting.folder import captures_folder
 from stimuli.gait_model import SIGNALS, GaitModel, Step, basis, shifted
 from stimuli.skeleton import Floats
 
@@ -156,7 +157,7 @@ def _registered(walk: Walk, measured: Sequence[Walk]) -> Walk:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Fit and write; prints what was used and the leave-one-subject-out errors."""
     parser = argparse.ArgumentParser(description="Fit the gait model to the captures and tables in a folder.")
-    parser.add_argument("--mocap", type=Path, required=True, help="folder that holds mocap/ and gait-tables/")
+    parser.add_argument("--mocap", type=captures_folder, required=True, help="has mocap/ and gait-tables/")
     parser.add_argument("--out", type=Path, default=Path(__file__).parents[1] / "data" / "gait_model.npz")
     chosen = parser.parse_args(arguments)
     walks, standing = read_all(chosen.mocap)

@@ -11,7 +11,6 @@ import csv
 from dataclasses import dataclass
 from pathlib import Path
 
-import ezc3d
 import numpy as np
 
 from stimuli.fitting.captures import Walk, average_stride
@@ -182,6 +181,8 @@ def _unit(vectors: Floats) -> Floats:
 
 def _read(path: Path) -> _Trial:
     """Markers in our axes: up is the file's Z, forward the travel along X (or, standing, where the feet point)."""
+    import ezc3d
+
     content = ezc3d.c3d(str(path))
     places = _filled(content["data"]["points"][:3].transpose(2, 1, 0) / 1000.0)
     names = list(content["parameters"]["POINT"]["LABELS"]["value"])

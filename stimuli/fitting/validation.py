@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 
 from stimuli.fitting.captures import Walk
+from stimuli.fitting.folder import captures_folder
 from stimuli.fitting.gait_model import fit, read_all
 from stimuli.gait_model import SIGNALS, Step, basis
 from stimuli.skeleton import Floats
@@ -63,7 +63,7 @@ def error_lines(errors: dict[str, tuple[float, float]]) -> list[str]:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print the errors of every joint and signal."""
     parser = argparse.ArgumentParser(description="Leave-one-person-out errors of the gait model.")
-    parser.add_argument("--mocap", type=Path, required=True, help="folder that holds mocap/ and gait-tables/")
+    parser.add_argument("--mocap", type=captures_folder, required=True, help="has mocap/ and gait-tables/")
     walks, standing = read_all(parser.parse_args(arguments).mocap)
     print("\n".join(error_lines(left_out_errors(walks, standing))))
 

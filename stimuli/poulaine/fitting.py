@@ -108,5 +108,7 @@ def printed(row: FittedRow) -> str:
 if __name__ == "__main__":
     if len(sys.argv) != 2:
         sys.exit("give the folder of the gait tables: python -m stimuli.poulaine.fitting ../shared/gait-tables")
-    for fitted in fitted_rows(Path(sys.argv[1])):
-        print(printed(fitted))
+    try:
+        print("\n".join(printed(row) for row in fitted_rows(Path(sys.argv[1]))))
+    except PoulaineError as error:
+        sys.exit(str(error))

@@ -64,14 +64,22 @@ def help_text() -> None:
 
 def main(arguments: list[str]) -> None:
     """Prints the machine and every figure, or those named, as `poses drawing rivals`; `timing [PRESSES]` alone."""
+    parts = {
+        part.__name__: part
+        for part in (
+            help_text, poses, methods, importing, timing, simulation, analysis_of_the_thesis, own_work, drawing,
+            graphics_card, rivals,
+        )
+    }  # fmt: skip
+    if arguments[:1] != ["timing"] and (unknown := set(arguments) - set(parts)):
+        sys.exit(f"there is no benchmark {', '.join(sorted(unknown))}; there are: {', '.join(parts)}")
     print(machine())
     if arguments[:1] == ["timing"]:
         help_text()
         timing(int(arguments[1]) if arguments[1:] else 300)
         return
-    first = (help_text, poses, methods, importing, timing, simulation, analysis_of_the_thesis)
-    for benchmark in (*first, own_work, drawing, graphics_card, rivals):
-        if not arguments or benchmark.__name__ in arguments:
+    for name, benchmark in parts.items():
+        if not arguments or name in arguments:
             benchmark()
 
 
