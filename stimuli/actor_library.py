@@ -68,7 +68,8 @@ class StoredActor:
         """How many cycles are captured and modelled, the licence and the source, for pages and journals."""
         captured = sum(bool(cycle.files) for cycle in self.cycles)
         modelled = len(self.cycles) - captured
-        counts = f"{captured} cycles captured" + (f", {modelled} modelled" if modelled else "")
+        counts = f"{captured} cycle{'' if captured == 1 else 's'} captured"
+        counts += f", {modelled} modelled" if modelled else ""
         return f"{counts}; licence: {self.licence}; source: {self.source}"
 
 

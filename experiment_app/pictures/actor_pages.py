@@ -225,7 +225,8 @@ def _capture_lines(actor: Actor) -> list[str]:
     cycles = [cycle for cycle in read_stored(actor.name).cycles if cycle.files]
     lines = ["", f"captured loops' seam  {max(cycle.seam for cycle in cycles) * 1e3:.2f} mm", "captured cycles"]
     for cycle in cycles[:12]:
-        lines.append(f"  {cycle.speed:.2f} m/s {cycle.step_frequency:5.1f}  {cycle.files[0][:24]}")
+        more = f" +{len(cycle.files) - 1}" if cycle.files[1:] else ""
+        lines.append(f"  {cycle.speed:.2f} m/s {cycle.step_frequency:5.1f}  {cycle.files[0][: 24 - len(more)]}{more}")
     return lines + ([f"  and {len(cycles) - 12} more"] if len(cycles) > 12 else [])
 
 

@@ -106,6 +106,21 @@ def _groups(cycles: Sequence[ArrangedCycle], gap: float) -> list[list[ArrangedCy
     return groups
 
 
+def _beats(cycles: Sequence[ArrangedCycle]) -> list[list[ArrangedCycle]]:
+    """Cycles of nearly one step frequency together, within twice SAME_ROW of each other.
+
+    Freely chosen step frequencies may follow each other without a gap over a wide range; that is cut into equal parts.
+    """
+    beats: list[list[ArrangedCycle]] = []
+    for group in _groups(cycles, SAME_ROW):
+        low, high = group[0].step_frequency, group[-1].step_frequency
+        parts = max(int(np.ceil((high - low) / (2 * SAME_ROW))), 1)
+        edges = np.linspace(low, high, parts + 1)[1:-1]
+        cut = np.searchsorted(edges, [cycle.step_frequency for cycle in group], side="right")
+        beats += [[cycle for cycle, part in zip(group, cut, strict=True) if part == n] for n in range(parts)]
+    return [beat for beat in beats if beat]
+
+
 def _row(cycles: Sequence[ArrangedCycle], own_frequency: bool = False) -> list[ArrangedCycle]:
     """Cycles in order of speed at their mean step frequency, those of nearly one speed averaged."""
     merged: list[list[ArrangedCycle]] = []
@@ -160,24 +175,29 @@ def _captured(walk: CapturedWalk, person: Person, symmetric: bool) -> ArrangedCy
 def _completed(
     captured: list[ArrangedCycle], walks: Sequence[CapturedWalk], person: Person, leg_length: float
 ) -> Arrangement:
-    """The metronome's grid with the captured walks in it at their own speed and step frequency."""
+    """The metronome's grid with the captured walks in it: at their own speed, those of one beat at its mean."""
     own = _Manner.of(captured, walks, person)
     rows: dict[float, list[ArrangedCycle]] = {}
-    for group in _groups(captured, SAME_ROW):
+    for group in _beats(captured):
         rows[_mean_frequency(group)] = _row(group)
     for beat in METRONOME:
-        inside = beat not in (METRONOME[0], METRONOME[-1])
-        if all(abs(beat - frequency) > (SAME_ROW if inside else 0.2) for frequency in rows):
+        if all(abs(beat - frequency) > SAME_ROW for frequency in rows):
             rows[beat] = []
-    arranged = []
-    for frequency in sorted(rows):
-        there = rows[frequency]
-        for speed in CYCLE_SPEEDS:
-            inside = speed not in (CYCLE_SPEEDS[0], CYCLE_SPEEDS[-1])
-            if all(abs(speed - cycle.speed) > (CROWDED if inside else 0.02) for cycle in rows[frequency]):
-                there = [*there, own.cycle(speed, frequency, leg_length)]
-        arranged.append((frequency, tuple(sorted(there, key=lambda cycle: cycle.speed))))
-    return Arrangement(tuple(arranged), False)
+    arranged = {frequency: _filled(row, own, frequency, leg_length) for frequency, row in rows.items()}
+    for beat, end in ((METRONOME[0], min(rows)), (METRONOME[-1], max(rows))):
+        if not min(rows) <= beat <= max(rows):
+            arranged[beat] = [own.moved(cycle, beat, leg_length) for cycle in arranged[end]]
+    return Arrangement(tuple((frequency, tuple(arranged[frequency])) for frequency in sorted(arranged)), False)
+
+
+def _filled(row: list[ArrangedCycle], own: _Manner, frequency: float, leg_length: float) -> list[ArrangedCycle]:
+    """A row with modelled cycles wherever no captured one is near, in order of speed."""
+    there = list(row)
+    for speed in CYCLE_SPEEDS:
+        inside = speed not in (CYCLE_SPEEDS[0], CYCLE_SPEEDS[-1])
+        if all(abs(speed - cycle.speed) > (CROWDED if inside else 0.02) for cycle in row):
+            there.append(own.cycle(speed, frequency, leg_length))
+    return sorted(there, key=lambda cycle: cycle.speed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,6 +238,23 @@ class _Manner:
             0.5 + float(weights @ self.strikes),
         )
         return ArrangedCycle(speed, step_frequency, walk)
+
+    def moved(self, cycle: ArrangedCycle, step_frequency: float, leg_length: float) -> ArrangedCycle:
+        """A cycle as it is at a step frequency (steps/min) close by: what it does differently from the model is kept.
+
+        So a grid reaches its end beat from captures a little inside without a bend, however close they are.
+        """
+        none = np.zeros(self.residuals.shape[2:])
+        (here, stance_here), (there, stance_there) = (
+            walk_coefficients(load_gait_model(), self.person, none, leg_length, cycle.speed, frequency)
+            for frequency in (cycle.step_frequency, step_frequency)
+        )
+        walk = WalkCurves(
+            cycle.walk.sides + there - here,
+            np.clip(cycle.walk.stance + stance_there - stance_here, *STANCE),
+            cycle.walk.left_strike,
+        )
+        return ArrangedCycle(cycle.speed, step_frequency, walk)
 
     def _weights(self, speed: float, step_frequency: float) -> Floats:
         """(n,) how much of each captured walk's difference there is at a speed and step frequency.

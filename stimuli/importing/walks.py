@@ -83,7 +83,8 @@ def read_walks(folder: Path, told: Callable[[int, int], None] | None = None, at_
     """
     if not folder.is_dir():
         raise ImportingError(f"{folder} is no folder; give the folder that holds the clips and actor.yaml")
-    paths = sorted(path for path in folder.iterdir() if path.suffix.lower() in ENDINGS)
+    found = (path for path in folder.iterdir() if path.suffix.lower() in ENDINGS)
+    paths = sorted(path for path in found if not path.name.startswith("."))  # macOS leaves ._walk.bvh on sticks
     if not paths:
         raise ImportingError(f"{folder} holds no motion file; they end in {', '.join(ENDINGS)}")
     walks: list[CapturedWalk] = []
@@ -177,7 +178,8 @@ def _check_walk(clip: Clip, cycle: Cycle, path: Path) -> None:
     speed = cycle.gait.speed
     if not SPEEDS[0] <= speed <= SPEEDS[1]:
         raise ImportingError(
-            f"{path}: goes at {speed:.2f} m/s, which is no walk ({SPEEDS[0]:g} to {SPEEDS[1]:g} m/s); check unit_to_m"
+            f"{path}: goes at {speed:.2f} m/s, which is no walk ({SPEEDS[0]:g} to {SPEEDS[1]:g} m/s); check unit_to_m "
+            f"({clip.source.unit_to_m:g}) and up ({clip.source.up})"
         )
     positions = world_positions(clip)
     turn = _turn(clip, positions, cycle.provenance.first_frame, cycle.provenance.last_frame)

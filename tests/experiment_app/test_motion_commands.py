@@ -122,7 +122,7 @@ def test_an_imported_actor_is_listed_posed_and_accepted_in_a_study(folder, tmp_p
     from tests.protocols.studies import changed
 
     assert run(["actor", "import", str(folder), "--name", "anna"]) == 0
-    assert "1 cycles captured" in capfd.readouterr().out
+    assert "1 cycle captured" in capfd.readouterr().out
     assert run(["actor", "list"]) == 0
     assert "anna" in capfd.readouterr().out
     words = ["--speed", "1.0", "--step-frequency", "100", "--seconds", "1", "--out", "p.npz"]

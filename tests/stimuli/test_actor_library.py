@@ -43,7 +43,7 @@ def test_what_is_stored_is_read_back(tmp_path):
     assert (read.licence, read.source, read.follows, read.notes) == ("CC BY 4.0", "our laboratory", True, ("a note",))
     assert read.cycles[0].captured == written.cycles[0].captured
     np.testing.assert_allclose(read.cycles[1].walk.sides, written.cycles[1].walk.sides, atol=1e-6)
-    assert read.provenance == "1 cycles captured, 1 modelled; licence: CC BY 4.0; source: our laboratory"
+    assert read.provenance == "1 cycle captured, 1 modelled; licence: CC BY 4.0; source: our laboratory"
 
 
 def test_a_stored_actor_walks_at_what_is_asked(tmp_path):

@@ -4,6 +4,7 @@ import csv
 import json
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -211,6 +212,32 @@ def test_walks_to_a_metronome_are_grouped_by_its_beat(tmp_path):
     assert not actor.follows
     assert [frequency for frequency, _ in actor.rows] == pytest.approx([0.9 * 102.5, 1.1 * 102.5], rel=0.02)
     assert [len(row) for _, row in actor.rows] == [2, 2]
+
+
+@needs_captures
+def test_walks_at_freely_chosen_step_frequencies_stay_where_they_were_walked_in_a_completed_grid():
+    """Fourteen from 94 to 117 steps/min, each within 2 of the next, are no beat of a metronome: none is moved by 3."""
+    from stimuli.actors import Person
+    from stimuli.gait import Gait
+    from stimuli.importing.arrangement import arrange
+
+    walk = read_walk(CMU / "cmu_16_15.bvh")
+    gaits = [Gait(0.0065 * frequency, frequency) for frequency in np.linspace(94.0, 117.0, 14)]
+    walks = [replace(walk, file=f"w{index}.bvh", gait=gait) for index, gait in enumerate(gaits)]
+    person = Person("x", "M", 30.0, 1.70, 65.0, 1.2, 0.0065, "", ())
+    arrangement = arrange(walks, person, walk.leg_length, complete=True)
+    placed = {file: cycle.step_frequency for cycle in arrangement.cycles for file in cycle.files}
+    for captured_walk in walks:
+        assert abs(placed[captured_walk.file] - captured_walk.gait.step_frequency) < 3.0
+    frequencies = [frequency for frequency, _ in arrangement.rows]
+    assert frequencies == sorted(set(frequencies))
+
+
+@needs_captures
+def test_files_that_a_mac_hides_beside_a_clip_are_no_clips(tmp_path):
+    folder = captured(tmp_path / "in", "07_01")
+    (folder / "._cmu_07_01.bvh").write_bytes(b"\x00\x05\x16\x07" * 30)
+    assert [walk.file for walk in read_walks(folder)] == ["cmu_07_01.bvh"]
 
 
 def rewritten(folder: Path, change) -> Path:
