@@ -8,6 +8,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -86,6 +87,14 @@ def test_programs_of_the_pages_say_what_is_missing(command, says):
     assert ran.returncode != 0
     assert says in " ".join(ran.stderr.split())
     assert "Traceback" not in ran.stderr
+
+
+def test_extras_that_are_to_be_installed_exist_and_are_quoted_for_every_shell():
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    for path in [*PAGES, *(p for room in ROOMS[:-1] for p in (ROOT / room).rglob("*.py"))]:
+        for quote, extra in re.findall(r"pip install (['\"]?)gaitlab\[(\w+)\]", path.read_text(encoding="utf-8")):
+            assert quote, f"{path.relative_to(ROOT)}: zsh wants quotes around gaitlab[{extra}]"
+            assert extra in extras, path.relative_to(ROOT)
 
 
 def _exists(name: str) -> bool:

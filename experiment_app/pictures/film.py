@@ -117,7 +117,7 @@ def _video(frames: Iterator[Pixels], rate: Fraction, path: Path) -> str:
         import av
     except ImportError:
         raise UsageError(
-            f"--out {path}: this needs PyAV (`pip install gaitlab[video]`); without it write .webp or a folder of PNGs."
+            f"--out {path}: this needs PyAV (pip install 'gaitlab[video]'); without it write .webp or a folder of PNGs."
         ) from None
     count = 0
     with av.open(str(path), "w") as file:

@@ -1,7 +1,7 @@
 """Psychtoolbox's keyboard queue as a source of key times, for laboratories that compare with PsychoPy or MATLAB.
 
 Its thread waits on a connection of its own and reads the clock when it wakes (Linux), or takes the device's own
-times (macOS). Optional: `pip install gaitlab[psychtoolbox]`.
+times (macOS). Optional: `pip install 'gaitlab[psychtoolbox]'`.
 """
 
 from __future__ import annotations
