@@ -20,6 +20,7 @@ from experiment_app.render.crowd_levels import (
     shadow_instances,
     within_picture,
 )
+from experiment_app.render.crowd_light import may_shade
 from experiment_app.render.drawn import CrowdLook, DrawnCrowd
 from experiment_app.render.light import ON_CROWDS, Sunlight
 from experiment_app.render.part_map import SHADER_CONSTANTS
@@ -31,7 +32,6 @@ INSTANCE_BYTES = 16
 CROWD = {**ON_CROWDS, "CROWD": "1"}
 FAR = {**CROWD, "SHADOW_TAPS": "1"}
 HAZE, FADED = {"OPEN_GROUND": "1", "HAZE": "1"}, {"FADED": "1"}
-SHADED = 75.0  # m from the eye, beyond which the haze leaves little of a shadow
 
 
 class CrowdPass:
@@ -62,7 +62,7 @@ class CrowdPass:
         heights = heights_on_screen(viewpoint, distance, cast.statures, picture_height)
         seen = within_picture(viewpoint, places, 0.7 * cast.statures)
         self._seen = seen_instances(np.where(seen, heights, 0.0), crowd.shown, cast.body, cast.look, levels, forced)
-        casting = (distance < SHADED) & (crowd.shown > 0.5) & within_picture(viewpoint, places, 1.6 * cast.statures)
+        casting = (crowd.shown > 0.5) & may_shade(viewpoint, places, cast.statures)
         self._casting = shadow_instances(heights, casting, cast.body, levels)
         self._poses = _written(self._context, self._poses, crowd.rows)
         for number, instances in enumerate((self._seen, self._casting)):

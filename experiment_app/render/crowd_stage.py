@@ -9,16 +9,17 @@ from experiment_app.render.cameras import Viewpoint
 from experiment_app.render.contact import CROWD_TEXELS, crowd_occluders
 from experiment_app.render.contact_pass import EVERYWHERE, ContactPass
 from experiment_app.render.crowd_levels import distances
-from experiment_app.render.crowd_pass import SHADED, CrowdPass
+from experiment_app.render.crowd_light import crowd_sunlight, map_size
+from experiment_app.render.crowd_pass import CrowdPass
 from experiment_app.render.drawn import DrawnCrowd
 from experiment_app.render.ground_pass import GroundPass
-from experiment_app.render.light import ON_CROWDS, Sunlight, fit_sunlight
-from experiment_app.render.shadow_map import CROWD_SIZE, ShadowMap
+from experiment_app.render.light import ON_CROWDS, Sunlight
+from experiment_app.render.shadow_map import ShadowMap
 from experiment_app.render.street_pass import StreetPass
 from experiment_app.scene import STREET_HALF_WIDTH, Scene
 
 TOUCHED = 40.0  # m from the eye, beyond which contact with the ground is less than a pixel
-TALLEST = 2.1  # m above the ground that shadows can begin
+MOST_MAPS = 4  # shadow maps kept, some 6 MB each; two cameras side by side take turns
 
 
 class CrowdStage:
@@ -26,7 +27,7 @@ class CrowdStage:
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
-        self._shadows = ShadowMap(context, CROWD_SIZE)
+        self._shadow_maps: dict[tuple[int, int], ShadowMap] = {}  # by size, which each camera has its own
         self._people: dict[bool, CrowdPass] = {}
         self._contact = ContactPass(context, CROWD_TEXELS)
         self._outdoors: GroundPass | None = None
@@ -40,15 +41,16 @@ class CrowdStage:
         if scene.ground == "plain":
             tone = scene.marks.background
             picture.clear(tone, tone, tone)
-        sunlight = _sunlight(scene, crowd, viewpoint)
-        self._shadows.begin()
+        sunlight = crowd_sunlight(scene.ground, viewpoint)
+        shadows = self._shadow_map(map_size(sunlight))
+        shadows.begin()
         people.draw_shadow(sunlight)
         picture.use()
-        self._shadows.bind()
+        shadows.bind()
         people.draw(viewpoint, sunlight)
         if scene.ground != "plain":
             self._draw_ground(scene, crowd, viewpoint, sunlight)
-        self._shadows.unbind()
+        shadows.unbind()
 
     def draw_parts(self, scene: Scene, crowd: DrawnCrowd, viewpoint: Viewpoint, height: int) -> None:
         """Draws the part map of a crowd into the bound framebuffer."""
@@ -77,6 +79,13 @@ class CrowdStage:
             self._people[outdoors] = CrowdPass(self._context, outdoors)
         return self._people[outdoors]
 
+    def _shadow_map(self, size: tuple[int, int]) -> ShadowMap:
+        if size not in self._shadow_maps:
+            if len(self._shadow_maps) >= MOST_MAPS:
+                self._shadow_maps.pop(next(iter(self._shadow_maps))).release()
+            self._shadow_maps[size] = ShadowMap(self._context, size)
+        return self._shadow_maps[size]
+
     def _open_ground(self) -> GroundPass:
         if self._outdoors is None:
             self._outdoors = GroundPass(self._context, "open_ground.frag", shadows=ON_CROWDS)
@@ -90,22 +99,7 @@ class CrowdStage:
 
     def release(self) -> None:
         """Frees the GPU's memory."""
-        for part in (self._shadows, *self._people.values(), self._contact, self._outdoors, *(self._street or ())):
+        several = (*self._shadow_maps.values(), *self._people.values(), *(self._street or ()))
+        for part in (self._contact, self._outdoors, *several):
             if part is not None:
                 part.release()
-
-
-def _sunlight(scene: Scene, crowd: DrawnCrowd, viewpoint: Viewpoint) -> Sunlight:
-    """The sun, its shadow map over the part of the crowd that is near enough for shadows to be seen."""
-    places = crowd.rows[:, 63, :3]
-    near = places[distances(viewpoint, places) < SHADED]
-    low, high = (near.min(axis=0), near.max(axis=0)) if len(near) else (viewpoint.eye - 1.0, viewpoint.eye + 1.0)
-    corners = np.array(
-        [
-            (x, y, z)
-            for x in (low[0] - 0.7, high[0] + 0.7)
-            for y in (0.0, TALLEST)
-            for z in (low[2] - 0.7, high[2] + 0.7)
-        ]
-    )
-    return fit_sunlight(scene.ground, viewpoint.azimuth, (), corners)

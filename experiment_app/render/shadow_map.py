@@ -8,18 +8,17 @@ from experiment_app.render.light import Sunlight
 from experiment_app.render.programs import set_if_used
 from stimuli.skeleton import Floats
 
-SIZE = 1024  # texels; about 2 mm each when fitted to one walker
-CROWD_SIZE = 2048  # texels; some centimetres each when fitted to a street
+SIZE = (1024, 1024)  # texels; about 2 mm each when fitted to one walker
 MAP_UNIT, DEPTH_UNIT = 4, 5
 
 
 class ShadowMap:
-    """A square depth texture, read twice: compared (soft edge) and as it is (how far away the caster is)."""
+    """A depth texture, read twice: compared (soft edge) and as it is (how far away the caster is)."""
 
-    def __init__(self, context: moderngl.Context, size: int = SIZE) -> None:
+    def __init__(self, context: moderngl.Context, size: tuple[int, int] = SIZE) -> None:
         self._context = context
         self._size = size
-        self._depth = context.depth_texture((size, size))
+        self._depth = context.depth_texture(size)
         self._depth.repeat_x = self._depth.repeat_y = False
         self._frame = context.framebuffer(depth_attachment=self._depth)
         self._compared = context.sampler(
@@ -32,7 +31,7 @@ class ShadowMap:
     def begin(self) -> None:
         """Makes the map the framebuffer drawn into, and empties it."""
         self._frame.use()
-        self._frame.viewport = (0, 0, self._size, self._size)
+        self._frame.viewport = (0, 0, *self._size)
         self._frame.clear(depth=1.0)
         self._context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
 

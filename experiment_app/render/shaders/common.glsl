@@ -30,6 +30,14 @@ vec2 turned_on(vec2 direction) {
 float sunlight(vec3 world, vec3 normal, bool wanted) {
     return 1.0;
 }
+#elif SHADOW_TAPS == 1
+// One comparison, for points near to one another that what they find is spread between: the vertices of far people.
+float sunlight(vec3 world, vec3 normal, bool wanted) {
+    vec3 at = (world_to_light * vec4(world + normal * SHADOW_OFFSET, 1.0)).xyz;
+    bool within = wanted && all(equal(at.xy, clamp(at.xy, 0.0, 1.0)));
+    float lit = textureLod(shadow_map, vec3(at.xy, at.z - SHARPEST / light_extent.z), 0.0);
+    return within ? lit : 1.0;
+}
 #elif BLOCKER_TAPS == 0
 // The same with a soft edge of one width everywhere, for crowds, whose shadow map is coarser than any penumbra.
 float sunlight(vec3 world, vec3 normal, bool wanted) {
