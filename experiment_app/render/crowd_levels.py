@@ -110,7 +110,7 @@ def seen_instances(
 def shadow_instances(heights: Floats, casting: NDArray[np.bool_], body: NDArray[np.intp], levels: int) -> Instances:
     """Whose shadow may be seen, in the coarse levels that do for a shadow map with texels of some centimetres."""
     rows = np.flatnonzero(casting)
-    level = np.where(heights[rows] < HEIGHTS[FAR_LEVEL - 1], levels - 1, min(FAR_LEVEL, levels - 1))
+    level = np.minimum(FAR_LEVEL + (heights[rows][:, None] < HEIGHTS[1:FAR_LEVEL]).sum(axis=1), levels - 1)
     key = body[rows] * levels + level
     order = np.argsort(key, kind="stable")
     table = np.zeros((len(rows), 4), np.float32)

@@ -146,6 +146,13 @@ def test_batches_are_one_per_body_and_level_and_hold_everybody_once():
     assert sorted(casting.table[:, 0].astype(int)) == np.flatnonzero(shown > 0.5).tolist()
 
 
+def test_shadows_are_cast_by_the_coarse_levels_and_by_the_coarsest_of_people_far_away():
+    """600 pixels tall: the finest of the three coarse levels; 150: the next; 100 and 20: the coarsest."""
+    heights = np.array([600.0, 150.0, 100.0, 20.0])
+    casting = shadow_instances(heights, np.ones(4, bool), np.arange(4), 6)
+    assert [batch.level for batch in casting.batches] == [3, 4, 5, 5]
+
+
 @pytest.mark.slow
 def test_levels_change_without_a_jump_in_the_picture():
     """The largest change of one frame, of all in which somebody changes level, is no larger than without changes."""
