@@ -24,6 +24,7 @@ import moderngl
 import numpy as np
 
 from experiment_app.crowds import END, drawn_crowd, plan_of
+from experiment_app.live import without_collection
 from experiment_app.render.crowd_pass import CROWD, FAR, CrowdPass
 from experiment_app.render.renderer import Renderer
 from experiment_app.render.shadow_map import ShadowMap
@@ -58,21 +59,22 @@ class _Timed(dict[str, float]):
 def _timed(
     renderer: Renderer, target: moderngl.Framebuffer, scenes: Iterator[Scene], frames: int = FRAMES, warm: int = 3
 ) -> _Timed:
-    """Frames are timed after so many that warm up."""
+    """Frames are timed after so many that warm up, without Python's garbage collector, as in a session."""
     walls, poses = [], []
     used = 0.0
-    for number, scene in zip(range(frames + warm), scenes, strict=False):
-        if number == warm:
-            used = _used()
-        begun = time.perf_counter()
-        drawn = drawn_walkers(scene)
-        posed = time.perf_counter()
-        renderer.draw(scene, drawn, target)
-        target.ctx.finish()
-        if number >= warm:
-            walls.append(1e3 * (time.perf_counter() - begun))
-            poses.append(1e3 * (posed - begun))
-    cpu = 1e3 * (_used() - used) / frames
+    with without_collection():
+        for number, scene in zip(range(frames + warm), scenes, strict=False):
+            if number == warm:
+                used = _used()
+            begun = time.perf_counter()
+            drawn = drawn_walkers(scene)
+            posed = time.perf_counter()
+            renderer.draw(scene, drawn, target)
+            target.ctx.finish()
+            if number >= warm:
+                walls.append(1e3 * (time.perf_counter() - begun))
+                poses.append(1e3 * (posed - begun))
+        cpu = 1e3 * (_used() - used) / frames
     low, middle, high = (float(value) for value in np.quantile(walls, (0.1, 0.5, 0.9)))
     return _Timed(wall_p10=low, wall=middle, wall_p90=high, cpu=cpu, poses=float(np.median(poses)))
 
