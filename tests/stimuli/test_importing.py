@@ -466,18 +466,19 @@ def test_an_unlikely_height_is_noted_and_a_likely_one_is_not(tmp_path):
 
 @needs_captures
 def test_clips_read_several_at_once_are_the_same_in_the_same_order(tmp_path):
-    folder = captured(tmp_path / "in", "07_01", "07_03", "07_10")
-    for copy in range(4):
-        for name in ("07_01", "07_03", "07_10"):
-            shutil.copyfile(CMU / f"cmu_{name}.bvh", folder / f"cmu_{name}_{copy}.bvh")
+    pytest.importorskip("ezc3d")
+    folder = described(tmp_path / "in", height=1.76)
+    for copy in range(6):
+        for name in ("2014019_C4_05", "2014019_C5_03"):
+            shutil.copyfile(MOCAP / "c3d/schreiber-moissenet" / f"{name}.c3d", folder / f"{name}_{copy}.c3d")
     told: list[int] = []
     alone, together = read_walks(folder), read_walks(folder, lambda done, of: told.append(done), at_once=2)
     assert [walk.file for walk in together] == [walk.file for walk in alone]
     assert told == list(range(1, len(alone) + 1))
     for one, other in zip(alone, together, strict=True):
         np.testing.assert_array_equal(one.curves.sides, other.curves.sides)
-    (folder / "cmu_07_03_2.bvh").write_text("no motion", encoding="utf-8")
-    with pytest.raises(MotionFileError, match=r"cmu_07_03_2\.bvh"):
+    (folder / "2014019_C5_03_2.c3d").write_text("no motion", encoding="utf-8")
+    with pytest.raises(MotionFileError, match=r"2014019_C5_03_2\.c3d"):
         read_walks(folder, at_once=2)
 
 
