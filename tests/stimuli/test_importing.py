@@ -489,3 +489,12 @@ def test_of_two_clips_equally_near_to_the_comfortable_speed_the_slower_gives_the
         folder = tmp_path / "-".join(names)
         actor = import_folder(captured(folder, *names, height=1.68), "two", tmp_path / "library", replace=True)
         assert actor.person.walk_ratio_source == f"captured, cmu_{names[0]}.bvh"
+
+
+@needs_captures
+def test_of_two_clips_equally_near_the_more_usual_walk_gives_the_walk_ratio(tmp_path):
+    """Subject 07 at 1.36 m/s took steps of 0.86 m (0.0089 m·min), at 1.38 m/s his usual ones (0.0068); MANIFEST.csv."""
+    folder = captured(tmp_path / "in", "07_01", "07_03", "07_08", "07_10")
+    person = import_folder(folder, "seven", tmp_path / "library").person
+    assert person.walk_ratio_source == "captured, cmu_07_01.bvh"
+    assert person.walk_ratio == pytest.approx(0.0068, abs=0.0002)
