@@ -204,7 +204,7 @@ def _draw_numbers(axis: Any, actor: Actor, rows: Sequence[QualityRow]) -> None:
         f"step freq. error     {max(abs(r.frequency_error) for r in rows):.4f} %",
         f"mean slide, worst    {max(r.delivered.slide_mean for r in rows):.2f} mm",
         f"peak slide, worst    {max(r.delivered.slide_peak for r in rows):.2f} mm",
-        f"sole, lowest         {min(r.delivered.sole_lowest for r in rows):.2f} mm",
+        f"sole, lowest         {min(r.delivered.sole_lowest for r in rows):z.2f} mm",
         f"knee, straightest    {min(r.delivered.knee_least for r in rows):.1f} deg",
         f"beyond limits        {sum(bool(r.faults) for r in rows)} places",
         "",

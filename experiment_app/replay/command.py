@@ -41,16 +41,16 @@ class Checked:
 def opened(place: Path, number: int | None, practice: bool) -> tuple[Run, Plan, list[RecordedTrial]]:
     """The run at a path (its folder or its journal), its plan and the trials wanted; raises UsageError without any."""
     run = run_at(place)
-    trials = [
-        trial
-        for trial in recorded_trials(run.lines)
-        if trial.begun["practice"] == practice and number in (None, trial.begun["number"])
-    ]
+    recorded = list(recorded_trials(run.lines))
+    of_kind = [trial for trial in recorded if trial.begun["practice"] == practice]
+    trials = [trial for trial in of_kind if number in (None, trial.begun["number"])]
     if not trials:
-        drawn = sorted(t.begun["number"] for t in recorded_trials(run.lines) if t.begun["practice"] == practice)
+        drawn = sorted(trial.begun["number"] for trial in of_kind)
         what = "training trial" if practice else "trial"
-        if number is not None and drawn:
+        if drawn:
             raise UsageError(f"--trial {number}: {run.journal} has {what}s {drawn[0]} to {drawn[-1]} with frames.")
+        if recorded and not practice:
+            raise UsageError(f"{run.journal} has no finished trial but training trials; say --practice for those.")
         raise UsageError(
             f"{run.journal} has no finished {what} with a log of its frames; simulated runs draw nothing, so replay a "
             "run of `gaitlab run` or of `gaitlab demo`."

@@ -11,8 +11,10 @@ from random import Random
 import pytest
 
 from experiment_app.command import run
+from experiment_app.errors import UsageError
 from experiment_app.loop import run_session
 from experiment_app.opening import open_new, recorded_plan
+from experiment_app.replay.command import opened
 from experiment_app.replay.film import film_length
 from experiment_app.replay.frames import replayed_frames
 from experiment_app.replay.recorded import RecordedTrial, recorded_trials
@@ -92,14 +94,14 @@ class Scripted:
         self._waiting.sort(key=lambda pair: pair[1].time)
 
 
-def recorded(data: Path, seed: int) -> tuple[Path, Scripted]:
-    """The folder of a run of two trials that a scripted person did, and what she saw."""
-    opened = open_new(short(), "P01", data, display={}, simulated=True)
-    trials = tuple(step for step in opened.plan.steps if isinstance(step, TrialStep) and not step.trial.practice)
-    with opened.journal as journal:
+def recorded(data: Path, seed: int, practice: bool = False) -> tuple[Path, Scripted]:
+    """The folder of a run of two trials (or of training alone) that a scripted person did, and what she saw."""
+    run = open_new(short(), "P01", data, display={}, simulated=True)
+    trials = tuple(step for step in run.plan.steps if isinstance(step, TrialStep) and step.trial.practice == practice)
+    with run.journal as journal:
         window = Scripted(seed, journal.wait)
-        run_session(begin(replace(opened.plan, steps=trials[:2])), window, journal)
-    return opened.run.folder, window
+        run_session(begin(replace(run.plan, steps=trials[:2])), window, journal)
+    return run.run.folder, window
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -121,6 +123,15 @@ def test_a_key_altered_by_a_twentieth_of_a_second_is_noticed(tmp_path):
         same += [frame.same for frame in replayed_frames(recorded_plan(run), replace(trial, events=moved))]
     assert same[0]  # nothing had been pressed yet
     assert not all(same)
+
+
+def test_a_run_of_training_alone_says_how_to_replay_it(tmp_path):
+    folder, _ = recorded(tmp_path, 0, practice=True)
+    with pytest.raises(UsageError, match="no finished trial but training trials; say --practice for those"):
+        opened(folder, None, False)
+    assert len(opened(folder, None, True)[2]) == 2
+    with pytest.raises(UsageError, match=r"--trial 9: .* has training trials 1 to 2 with frames"):
+        opened(folder, 9, True)
 
 
 def later(event: Event) -> Event:
