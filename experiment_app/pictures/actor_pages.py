@@ -30,8 +30,8 @@ def table_lines(actor: Actor, rows: Sequence[QualityRow]) -> list[str]:
         wanted, gait = row.wanted, row.delivered
         lines.append(
             f"{wanted.speed:5.2f}  {wanted.step_frequency:9.2f}  {gait.speed:7.4f}  {gait.step_frequency:9.3f}  "
-            f"{row.speed_error:6.3f} {row.frequency_error:6.3f}  {gait.slide_mean:5.2f} {gait.slide_peak:5.2f}  "
-            f"{gait.sole_lowest:8.2f}  {gait.knee_least:5.1f}"
+            f"{row.speed_error:z6.3f} {row.frequency_error:z6.3f}  {gait.slide_mean:5.2f} {gait.slide_peak:5.2f}  "
+            f"{gait.sole_lowest:z8.2f}  {gait.knee_least:5.1f}"
             + (f"  beyond the limits: {', '.join(row.faults)}" if row.faults else "")
         )
     lines.append(
@@ -39,7 +39,7 @@ def table_lines(actor: Actor, rows: Sequence[QualityRow]) -> list[str]:
         f"step frequency {max(abs(row.frequency_error) for row in rows):.3f} %, "
         f"mean slide {max(gait.slide_mean for gait in done):.2f} mm, "
         f"peak {max(gait.slide_peak for gait in done):.2f} mm, "
-        f"sole {min(gait.sole_lowest for gait in done):.2f} mm, knee {min(gait.knee_least for gait in done):.1f} deg"
+        f"sole {min(gait.sole_lowest for gait in done):z.2f} mm, knee {min(gait.knee_least for gait in done):.1f} deg"
     )
     return lines
 
