@@ -14,8 +14,8 @@ from experiment_app.render.drawn import Drawn, DrawnCrowd, DrawnWalker
 from experiment_app.scene import Scene, Walker
 from stimuli.actors import Actor, load_actor
 from stimuli.bodies.body import Body
+from stimuli.bodies.imported_bodies import OWN_BUILD
 from stimuli.bodies.known import body_for, comes_with_gaitlab, in_the_build_of, load_body, scaled
-from stimuli.bodies.library import OWN_BUILD
 from stimuli.bodies.point_light import FIGURES, figure_lines, resting
 from stimuli.bodies.retarget import on_its_own_soles
 from stimuli.measure import delivered_gait

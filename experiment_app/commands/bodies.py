@@ -44,7 +44,7 @@ def import_file(
     replace: Annotated[bool, Parameter(negative="", help="Replace an imported body of this name.")] = False,
 ) -> int:
     """Check a character and keep it in the library of bodies (GAITLAB_BODIES), under a name for study files."""
-    from stimuli.bodies.library import stored
+    from stimuli.bodies.imported_bodies import stored
     from stimuli.body_files.container import open_container
     from stimuli.body_files.packing import packed
 
@@ -59,8 +59,8 @@ def import_file(
 @body_commands.command(name="list")
 def list_bodies() -> int:
     """List every name that a study's `body` can have."""
+    from stimuli.bodies.imported_bodies import MATCHED, MISMATCHED, OWN_BUILD, imported_names
     from stimuli.bodies.known import haircut_names, load_body, shipped_names, variant_names
-    from stimuli.bodies.library import MATCHED, MISMATCHED, OWN_BUILD, imported_names
     from stimuli.bodies.point_light import FIGURES
 
     ours = (*shipped_names(), *haircut_names(), *variant_names())

@@ -18,8 +18,8 @@ from experiment_app.scene import Camera, Crowd, Marks, Scene, View, Walker
 from experiment_app.walkers import drawn_walkers, walk_of
 from experiment_app.windows.offscreen import offscreen_context
 from protocols.study_file import read_study, shipped_studies
+from stimuli.bodies.imported_bodies import imported_names
 from stimuli.bodies.known import shipped_names
-from stimuli.bodies.library import imported_names
 from stimuli.bodies.point_light import FIGURES
 from stimuli.methods.recipe import Making
 from stimuli.methods.styles import default_styles

@@ -12,7 +12,7 @@ import numpy as np
 
 from stimuli.bodies.body import Body, Surface
 from stimuli.bodies.builds import GIRTHS, girths_of
-from stimuli.bodies.library import MATCHED, MISMATCHED, OWN_BUILD, imported_names, path_of
+from stimuli.bodies.imported_bodies import MATCHED, MISMATCHED, OWN_BUILD, imported_names, path_of
 from stimuli.bodies.point_light import FIGURES
 from stimuli.bodies.skinning import skin
 from stimuli.body_files.baked import haircuts, read_baked

@@ -11,8 +11,8 @@ import pytest
 from PIL import Image
 
 from stimuli.actors import load_actor
+from stimuli.bodies.imported_bodies import imported_names, stored
 from stimuli.bodies.known import body_names, load_body, scaled
-from stimuli.bodies.library import imported_names, stored
 from stimuli.bodies.retarget import on_its_own_soles, sole_gaps
 from stimuli.body_files.container import Container, open_container, read_container, write_container
 from stimuli.body_files.errors import BodyError
