@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import pandas as pd
@@ -29,11 +30,16 @@ def comparison_tests(used: pd.DataFrame, plan: AnalysisPlan) -> FurtherTest:
         notes += table.attrs["notes"]
         parts.append(table.assign(factor=asked.factor or "", each=asked.each or "", where=asked.where or "",
                                   reference=asked.label if asked.kind == "against" else ""))  # fmt: skip
-    table = pd.concat(parts, ignore_index=True)
-    first = ["factor", "each", "where", "reference"]
-    table = table[[*first, *(name for name in table if name not in first)]]
-    table["sentence"] = [_sentence(row) for row in table.to_dict("records")]
+    table = _one_table(parts, ["factor", "each", "where", "reference"], _sentence)
     return FurtherTest("comparisons", table, notes=_worth_saying(notes))
+
+
+def _one_table(parts: list[pd.DataFrame], first: list[str], sentence: Callable[[dict[str, Any]], str]) -> pd.DataFrame:
+    """The tables below one another, the columns that say what was tested first, a sentence for each row last."""
+    table = pd.concat(parts, ignore_index=True)
+    table = table[[*first, *(name for name in table if name not in first)]]
+    table["sentence"] = [sentence(row) for row in table.to_dict("records")]
+    return table
 
 
 def _sentence(row: dict[str, Any]) -> str:
@@ -62,10 +68,7 @@ def pair_tests(used: pd.DataFrame, plan: AnalysisPlan) -> FurtherTest:
         level = [" × ".join(str(row[name]) for name in asked.by) for row in table.to_dict("records")]
         table = table.drop(columns=list(asked.by)).assign(level=level)
         parts.append(table.assign(factors=" × ".join(asked.factors), by=" × ".join(asked.by), adjust=asked.adjust))
-    table = pd.concat(parts, ignore_index=True)
-    first = ["factors", "by", "level", "adjust"]
-    table = table[[*first, *(name for name in table if name not in first)]]
-    table["sentence"] = [_pair_sentence(row) for row in table.to_dict("records")]
+    table = _one_table(parts, ["factors", "by", "level", "adjust"], _pair_sentence)
     return FurtherTest("pairs", table, notes=_worth_saying(notes))
 
 
