@@ -227,7 +227,7 @@ def validator() -> str | None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(validator() is None, reason="the BIDS validator is 146 MB; pip install 'gaitlab[validate]'")
+@pytest.mark.skipif(validator() is None, reason="it needs the BIDS validator; pip install 'gaitlab[validate]'")
 def test_the_official_validator_finds_no_error_in_a_bids_export(data, tmp_path):
     export(data, "bids", tmp_path / "out")
     command = [str(validator()), str(tmp_path / "out"), "--json"]
