@@ -48,7 +48,7 @@ def read_container(data: bytes, where: str) -> Container:
         raise BodyError(f"{where}: this is not a GLB file (it does not begin with 'glTF')")
     version, length = struct.unpack_from("<II", data, 4)
     if version != _VERSION:
-        raise BodyError(f"{where}: glTF version {version} can't be read, only version 2; re-export it")
+        raise BodyError(f"{where}: {other_version(str(version), where)}")
     if length > len(data):
         raise BodyError(f"{where}: the file is cut short ({len(data)} of {length} bytes); copy it again")
     chunks: dict[bytes, bytes] = {}
@@ -89,7 +89,24 @@ def _document(text: bytes, where: str) -> dict[str, Any]:
         raise BodyError(f"{where}: its JSON can't be read ({type(error).__name__}); is it a glTF file?") from error
     if not isinstance(document, dict):
         raise BodyError(f"{where}: its JSON does not hold an object; is it a glTF file?")
+    _check_version(document.get("asset"), where)
     return document
+
+
+def _check_version(asset: Any, where: str) -> None:
+    """Raises BodyError unless the file says it is glTF 2 and asks for no later minor version (section 3.2)."""
+    version = asset.get("version") if isinstance(asset, dict) else None
+    if version is None:
+        raise BodyError(f"{where}: it does not say which glTF it is (asset.version); export it again as glTF 2.0")
+    least = str(asset.get("minVersion", "2.0"))
+    if str(version).split(".")[0] != "2" or least != "2.0":
+        raise BodyError(f"{where}: {other_version(str(version) if least == '2.0' else least, where)}")
+
+
+def other_version(version: str, where: str) -> str:
+    """What is said of a file in another glTF than 2.0, whose meshes and materials are written in another way."""
+    way_out = f"convert it first: gltf-pipeline -i {where} -o converted.glb" if version[:1] in "01" else "re-export it"
+    return f"glTF {version[:20]} can't be read, only glTF 2.0; {way_out}"
 
 
 def _buffer(buffer: Any, path: Path) -> bytes:

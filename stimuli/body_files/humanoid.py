@@ -15,12 +15,12 @@ import numpy as np
 from stimuli.body_files.container import Container
 from stimuli.body_files.errors import BodyError
 from stimuli.body_files.scene import GltfScene, world_matrices
+from stimuli.body_files.standing import other_side, upright, walks_backwards, without_extent
 from stimuli.motion_files.joint_names import NEEDED, roles_from_names
 from stimuli.motion_files.topology import roles_from_shape
 from stimuli.skeleton import JOINTS, PARENTS, Floats
 
 VRM_ROLES = {role.lower(): role for role in JOINTS}
-UNITS = (1.0, 0.01, 0.0254, 0.001, 10.0, 100.0)  # m per unit of the file, tried until the person is 0.5-3 m tall
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +32,7 @@ class Humanoid:
     positions: (21, 3) m, joints in the bind pose.
     to_person: (3, 4) from the file's bind space to metres, upright, facing +Z, sole on y = 0.
     places:    (N,) per node the index in JOINTS it moves with.
+    swapped:   whether the file takes left for right.
     """
 
     source: str
@@ -39,6 +40,7 @@ class Humanoid:
     positions: Floats
     to_person: Floats
     places: Floats
+    swapped: bool = False
 
 
 def understand(container: Container, scene: GltfScene, skin: int, bound: Floats, where: str) -> Humanoid:
@@ -50,9 +52,17 @@ def understand(container: Container, scene: GltfScene, skin: int, bound: Floats,
     missing = [role for role in NEEDED if role not in roles]
     if missing:
         raise BodyError(f"{where}: this is no person gaitlab can walk: no joint plays {', '.join(missing)}")
-    to_person = _upright(roles, binds, bound)
+    reason = without_extent(roles, binds, bound)
+    if reason:
+        raise BodyError(f"{where}: {reason}")
+    axes = scene_of_bind(scene, skin)[:3, :3]
+    to_person = upright(roles, binds, axes, bound)
+    swapped = walks_backwards(roles, binds, to_person, bound)
+    if swapped:
+        roles = {other_side(role): node for role, node in roles.items()}
+        to_person = upright(roles, binds, axes, bound)
     positions = _all_places(roles, binds, to_person)
-    return Humanoid(source, roles, positions, to_person, _carriers(roles, parents))
+    return Humanoid(source, roles, positions, to_person, _carriers(roles, parents), swapped)
 
 
 def bind_matrices(scene: GltfScene, skin: int, where: str) -> Floats:
@@ -72,10 +82,10 @@ def bind_matrices(scene: GltfScene, skin: int, where: str) -> Floats:
 def _bind_matrices(scene: GltfScene, skin: int) -> Floats:
     world = world_matrices(scene.nodes)
     joints, inverse = scene.skins[skin].joints, scene.skins[skin].inverse_binds
-    scene_of_bind = world[joints[0]] @ inverse[0]
-    if np.linalg.det(scene_of_bind) == 0:
+    to_scene = world[joints[0]] @ inverse[0]
+    if np.linalg.det(to_scene) == 0:
         raise np.linalg.LinAlgError("the skin is shrunk to nothing")
-    found = {int(j): scene_of_bind @ np.linalg.inv(b) for j, b in zip(joints, inverse, strict=True)}
+    found = {int(j): to_scene @ np.linalg.inv(b) for j, b in zip(joints, inverse, strict=True)}
 
     def bound(index: int) -> Floats:
         if index not in found:
@@ -85,6 +95,12 @@ def _bind_matrices(scene: GltfScene, skin: int) -> Floats:
         return found[index]
 
     return np.array([bound(i) for i in range(len(scene.nodes))])
+
+
+def scene_of_bind(scene: GltfScene, skin: int) -> Floats:
+    """(4, 4) from the space in which the skin was attached to the scene, by the place of its first joint."""
+    found: Floats = world_matrices(scene.nodes)[scene.skins[skin].joints[0]] @ scene.skins[skin].inverse_binds[0]
+    return found
 
 
 def _roles(container: Container, scene: GltfScene, skin: int, binds: Floats, where: str) -> tuple[str, dict[str, int]]:
@@ -122,25 +138,6 @@ def _vrm_roles(container: Container, count: int, where: str) -> dict[str, int]:
     if any(not 0 <= node < count for node in found.values()):
         raise BodyError(f"{where}: its VRM list of bones names nodes that do not exist")
     return found
-
-
-def _upright(roles: dict[str, int], binds: Floats, bound: Floats) -> Floats:
-    """(3, 4) to metres, up = +Y, forwards = +Z, sole on the ground below the hips."""
-    at = {role: binds[node, :3, 3] for role, node in roles.items()}
-    feet = 0.5 * (at["leftFoot"] + at["rightFoot"])
-    rough = at.get("head", at.get("neck", at["hips"])) - feet
-    axis = int(np.argmax(np.abs(rough)))
-    up = np.eye(3)[axis] * np.sign(rough[axis])
-    left = at["leftUpperLeg"] - at["rightUpperLeg"]
-    left = left - up * (left @ up)
-    left /= np.linalg.norm(left)
-    turn = np.stack([left, up, np.cross(left, up)])
-    turned = bound @ turn.T
-    tall = float(np.ptp(turned[:, 1]))
-    unit = next((u for u in UNITS if 0.5 <= tall * u <= 3.0), 1.75 / max(tall, 1e-9))
-    hips = turn @ at["hips"] * unit
-    shift = -np.array([hips[0], unit * turned[:, 1].min(), hips[2]])
-    return np.column_stack([turn * unit, shift])
 
 
 def _all_places(roles: dict[str, int], binds: Floats, to_person: Floats) -> Floats:

@@ -13,7 +13,9 @@ from stimuli.body_files.container import Container, open_container
 from stimuli.body_files.errors import BodyError
 from stimuli.body_files.humanoid import Humanoid, bind_matrices, understand
 from stimuli.body_files.materials import Material, read_materials
-from stimuli.body_files.scene import GltfScene, Primitive, placed_vertices, read_scene
+from stimuli.body_files.meshes import Primitive
+from stimuli.body_files.notes import notes_on_document, notes_on_meshes, notes_on_skeleton
+from stimuli.body_files.scene import GltfScene, placed_vertices, read_scene
 from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
 
 WITH_WEIGHTS = "export it with its armature and skin weights"
@@ -27,7 +29,7 @@ class Explained:
     """What was understood of a file beside the body itself.
 
     source: how joints were told apart: "VRM", a table of names, or "shape"; joints: role -> the file's name for it;
-    props: meshes left out because they hang on no skin; problems: sentences about pictures that are missing.
+    props: meshes left out because they hang on no skin; problems: sentences about what is missing or not drawn.
     """
 
     source: str
@@ -56,17 +58,17 @@ def import_and_explain(path: Path) -> tuple[Body, Explained]:
 def _person(container: Container, path: Path) -> tuple[Body, Explained]:
     scene = read_scene(container, path.name)
     skin = _main_skin(scene, path.name)
-    worn = _worn(scene)
+    worn, elsewhere = _worn(scene, skin)
     if not worn:
         raise BodyError(f"{path.name}: its meshes say not which joints move them (JOINTS_0, WEIGHTS_0); {WITH_WEIGHTS}")
     binds = bind_matrices(scene, skin, path.name)
     bound = [_bound(scene, node, primitive, binds, path.name) for node, primitive in worn]
-    everything = np.concatenate([points for _, points in bound])
+    everything = np.concatenate([points for _, points, _ in bound])
     person = understand(container, scene, skin, everything, path.name)
     material = read_materials(container, path)
     surfaces = tuple(
-        _surface(material(primitive.material), person, node, primitive, carried, points)
-        for (node, primitive), (carried, points) in zip(worn, bound, strict=True)
+        _surface(material(primitive.material), person, node, _seen_outside(primitive, mirrored), carried, points)
+        for (node, primitive), (carried, points, mirrored) in zip(worn, bound, strict=True)
         if len(primitive.triangles)
     )
     if not surfaces:
@@ -77,15 +79,17 @@ def _person(container: Container, path: Path) -> tuple[Body, Explained]:
         surfaces = _merged(surfaces)
     if len(surfaces) > MOST_MATERIALS:
         raise BodyError(f"{path.name}: it has {len(surfaces)} materials, more than {MOST_MATERIALS}; join some first")
-    used = {p.material for _, p in worn}
-    problems = dict.fromkeys(material(m).problem for m in sorted(used, key=str) if material(m).problem)
     props = sum(node.mesh is not None and node.skin is None for node in scene.nodes)
     explained = Explained(
         source=person.source,
         joints={role: scene.nodes[node].name or f"node {node}" for role, node in person.roles.items()},
         joints_in_file=len(scene.skins[skin].joints),
         props=props,
-        problems=tuple(problems),
+        problems=(
+            *notes_on_skeleton(elsewhere, person.swapped),
+            *notes_on_meshes([p for _, p in worn], material),
+            *notes_on_document(container.document),
+        ),
     )
     return Body(path.stem, Skeleton(offsets), stature, (surfaces,)), explained
 
@@ -106,10 +110,11 @@ def _main_skin(scene: GltfScene, where: str) -> int:
     return max(sorted(used), key=lambda s: len(scene.skins[s].joints))
 
 
-def _worn(scene: GltfScene) -> list[tuple[int, Primitive]]:
+def _worn(scene: GltfScene, skin: int) -> tuple[list[tuple[int, Primitive]], int]:
     """Skinned primitives with their node, of the finest level of detail where nodes are named after theirs.
 
-    Meshes hung whole on a joint (props) are left out.
+    Meshes hung whole on a joint (props) are left out, and so are those on another skeleton than that of the skin; how
+    many these are is the second value.
     """
     worn = [
         (index, primitive)
@@ -117,11 +122,32 @@ def _worn(scene: GltfScene) -> list[tuple[int, Primitive]]:
         for primitive in scene.primitives
         if node.skin is not None and primitive.mesh == node.mesh and primitive.joints is not None
     ]
-    return [pair for pair in worn if not COARSER.search(scene.nodes[pair[0]].name)] or worn
+    own = {s for s in range(len(scene.skins)) if _of_one_skeleton(scene, skin, s)}
+    ours = [pair for pair in worn if scene.nodes[pair[0]].skin in own]
+    return [pair for pair in ours if not COARSER.search(scene.nodes[pair[0]].name)] or ours, len(worn) - len(ours)
 
 
-def _bound(scene: GltfScene, node: int, primitive: Primitive, binds: Floats, where: str) -> tuple[Integers, Floats]:
-    """Node indices (V, K) that carry each vertex, and the vertices (V, 3) in the bind pose, in scene space."""
+def _of_one_skeleton(scene: GltfScene, skin: int, other: int) -> bool:
+    """Whether a skin has a joint in common with another, or one above or below a joint of it."""
+    first, second = ({int(j) for j in scene.skins[s].joints} for s in (skin, other))
+
+    def hangs_on(joints: set[int], among: set[int]) -> bool:
+        for joint in joints:
+            at = joint
+            while at >= 0:
+                if at in among:
+                    return True
+                at = scene.nodes[at].parent
+        return False
+
+    return hangs_on(first, second) or hangs_on(second, first)
+
+
+def _bound(
+    scene: GltfScene, node: int, primitive: Primitive, binds: Floats, where: str
+) -> tuple[Integers, Floats, bool]:
+    """Node indices (V, K) that carry each vertex, the vertices (V, 3) in the bind pose, in scene space, and whether
+    they are mirrored on their way there."""
     own = scene.skins[scene.nodes[node].skin or 0]
     assert primitive.joints is not None
     assert primitive.weights is not None
@@ -130,7 +156,14 @@ def _bound(scene: GltfScene, node: int, primitive: Primitive, binds: Floats, whe
     matrices = binds[own.joints] @ own.inverse_binds
     points = np.column_stack([primitive.positions, np.ones(len(primitive.positions))])
     blended = np.einsum("vk,vkij->vij", primitive.weights, matrices[primitive.joints])
-    return own.joints[primitive.joints], np.einsum("vij,vj->vi", blended, points)[:, :3]
+    placed = np.einsum("vij,vj->vi", blended, points)[:, :3]
+    mirrored = bool(len(blended) and np.median(np.linalg.det(blended[:, :3, :3])) < 0)
+    return own.joints[primitive.joints], placed, mirrored
+
+
+def _seen_outside(primitive: Primitive, mirrored: bool) -> Primitive:
+    """The primitive with its triangles turned over if it is mirrored, or its inside would be seen."""
+    return replace(primitive, triangles=primitive.triangles[:, ::-1]) if mirrored else primitive
 
 
 def _surface(

@@ -1,4 +1,4 @@
-"""Any glTF 2.0 scene as arrays: nodes, skins and meshes, and where the vertices are. Knows nothing of people.
+"""Any glTF 2.0 scene as arrays: nodes, skins, its meshes (meshes.py), and where the vertices are. Knows no people.
 
 Vertices follow glTF 2.0 section 3.7.3: a skinned mesh ignores its node's own transform; joints take the place
 `world of the joint x inverse bind matrix`.
@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from stimuli.bodies.body import Integers
-from stimuli.body_files.accessors import Array, item, read_accessor
+from stimuli.body_files.accessors import item, read_accessor
 from stimuli.body_files.container import Container
 from stimuli.body_files.errors import BodyError
+from stimuli.body_files.meshes import TRIANGULAR, Primitive, read_primitive
 from stimuli.skeleton import Floats
 
 MOST_JOINTS, MOST_TRIANGLES = 256, 500_000
@@ -57,21 +58,6 @@ class Skin:
 
 
 @dataclass(frozen=True, eq=False)
-class Primitive:
-    """Vertices of one material: positions (V, 3) as stored, the mesh it belongs to, and, when it is skinned,
-    joints (V, K) as places in the skin's list and weights (V, K) summing to 1; triangles (T, 3); texture_places
-    (V, 2) per set of coordinates, an empty tuple without."""
-
-    mesh: int
-    material: int | None
-    positions: Floats
-    joints: Integers | None
-    weights: Floats | None
-    triangles: Integers
-    texture_places: tuple[Floats, ...] = ()
-
-
-@dataclass(frozen=True, eq=False)
 class GltfScene:
     """What a file holds of geometry."""
 
@@ -90,10 +76,10 @@ def read_scene(container: Container, where: str) -> GltfScene:
         nodes = _nodes(document, where)
         skins = tuple(_skin(container, skin, len(nodes), where) for skin in document.get("skins", []))
         primitives = tuple(
-            _primitive(container, m, primitive, where)
+            read_primitive(container, m, primitive, where)
             for m, mesh in enumerate(document.get("meshes", []))
             for primitive in mesh["primitives"]
-            if primitive.get("mode", 4) == 4
+            if primitive.get("mode", 4) in TRIANGULAR
         )
     except (KeyError, IndexError, TypeError, AttributeError, ValueError, OverflowError) as error:
         if isinstance(error, BodyError):
@@ -224,57 +210,3 @@ def _skin(container: Container, skin: dict[str, Any], nodes: int, where: str) ->
             raise BodyError(f"{where}: a skin's inverse bind matrices are too few or not usable")
         binds = stored[: len(joints)].astype(np.float64).reshape(-1, 4, 4).transpose(0, 2, 1)
     return Skin(joints, binds)
-
-
-def _primitive(container: Container, mesh: int, primitive: dict[str, Any], where: str) -> Primitive:
-    attributes = primitive["attributes"]
-    positions = read_accessor(container, attributes.get("POSITION"), where).astype(np.float64)
-    if positions.shape[1] != 3 or not np.all(np.isfinite(positions)):
-        raise BodyError(f"{where}: a mesh has positions that are not finite")
-    indices = np.arange(len(positions) // 3 * 3)
-    if "indices" in primitive:
-        indices = read_accessor(container, primitive["indices"], where).ravel().astype(np.int64)
-    if len(indices) % 3 or (len(indices) and int(indices.max()) >= len(positions)):
-        raise BodyError(f"{where}: a mesh has triangles that name vertices which do not exist")
-    joints, weights = _influences(container, attributes, len(positions), where)
-    material = primitive.get("material")
-    places = _texture_places(container, attributes, len(positions), where)
-    return Primitive(mesh, material, positions, joints, weights, indices.reshape(-1, 3), places)
-
-
-def _texture_places(container: Container, attributes: dict[str, Any], count: int, where: str) -> tuple[Floats, ...]:
-    """(V, 2) of every set of texture coordinates, in order."""
-    found: list[Floats] = []
-    while f"TEXCOORD_{len(found)}" in attributes:
-        values = read_accessor(container, attributes[f"TEXCOORD_{len(found)}"], where).astype(np.float64)
-        if values.shape != (count, 2) or not np.all(np.isfinite(values)):
-            raise BodyError(f"{where}: texture coordinates of a mesh do not match its vertices")
-        found.append(values)
-    return tuple(found)
-
-
-def _influences(
-    container: Container, attributes: dict[str, Any], count: int, where: str
-) -> tuple[Integers | None, Floats | None]:
-    """Joints and weights of all sets, normalised; a vertex without any weight hangs on its skin's first joint."""
-    sets = [n for n in range(8) if f"JOINTS_{n}" in attributes and f"WEIGHTS_{n}" in attributes]
-    if not sets:
-        return None, None
-    joints = np.hstack([_rows(container, attributes[f"JOINTS_{n}"], count, where) for n in sets]).astype(np.int64)
-    weights = np.hstack([_rows(container, attributes[f"WEIGHTS_{n}"], count, where) for n in sets]).astype(np.float64)
-    if not np.all(np.isfinite(weights)) or np.any(weights < 0):
-        raise BodyError(f"{where}: a mesh has weights that are negative or not finite")
-    total = weights.sum(axis=1, keepdims=True)
-    if len(total) and not total.any():
-        raise BodyError(f"{where}: all joint weights of a mesh are 0; export the file again with its skin weights")
-    weights[total[:, 0] == 0, 0] = 1
-    joints[total[:, 0] == 0, 0] = 0
-    joints = np.where(weights > 0, joints, 0)
-    return joints, weights / weights.sum(axis=1, keepdims=True)
-
-
-def _rows(container: Container, accessor: Any, count: int, where: str) -> Array:
-    values = read_accessor(container, accessor, where)
-    if values.shape != (count, 4):
-        raise BodyError(f"{where}: joints or weights of a mesh do not match its vertices")
-    return values

@@ -62,6 +62,11 @@ def read_document(path: Path) -> Document:
         raise MotionFileError(f"{path}: its JSON cannot be read ({error}); export it again") from error
     if not isinstance(content, dict):
         raise MotionFileError(f"{path}: is no glTF file, whose JSON is an object")
+    asset = content.get("asset")
+    version = str(asset.get("version", "")) if isinstance(asset, dict) else ""
+    if version.split(".")[0] != "2":
+        said = f"is glTF {version[:20]}" if version else "does not say which glTF it is (asset.version)"
+        raise MotionFileError(f"{path}: {said}; only glTF 2.0 can be read: convert or export it again")
     return Document(path, content, chunk)
 
 

@@ -102,7 +102,9 @@ def test_a_file_of_another_kind_is_refused(data):
 
 
 def test_an_older_gltf_version_is_named():
-    with pytest.raises(BodyError, match="version 1 can't be read"):
+    with pytest.raises(
+        BodyError, match=r"glTF 1 can't be read, only glTF 2\.0; convert it first: gltf-pipeline -i old"
+    ):
         read_baked(SMALL[:4] + struct.pack("<I", 1) + SMALL[8:], "old")
 
 

@@ -157,6 +157,15 @@ def _weights(document, change):
             change(primitive["attributes"])
 
 
+def _accessors(document, name, change):
+    for mesh in document["meshes"]:
+        for primitive in mesh["primitives"]:
+            accessor = document["accessors"][primitive["attributes"][name]]
+            if "seen" not in accessor:
+                change(accessor)
+                accessor["seen"] = True
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
@@ -177,11 +186,160 @@ def _weights(document, change):
         ),
         (lambda d: [n.update(scale=[0, 0, 0]) for n in d["nodes"]], "is scaled to 0"),
         (lambda d: d["meshes"][0].pop("primitives"), "breaks glTF's own rules"),
+        (lambda d: d["skins"][0].pop("inverseBindMatrices"), "lie in one place in the bind pose"),
+        (lambda d: _accessors(d, "POSITION", lambda a: a.pop("bufferView")), "all its vertices lie in one place"),
+        (lambda d: _accessors(d, "JOINTS_0", lambda a: a.update(componentType=5120)), "a type of number"),
     ],
 )
 def test_a_file_that_cant_be_shown_is_refused_with_a_reason(tmp_path, change, sentence):
     with pytest.raises(BodyError, match=sentence):
         import_body(saved(tmp_path, changed(change)))
+
+
+@pytest.mark.parametrize(
+    ("asset", "sentence"),
+    [
+        (
+            {"version": "1.0"},
+            r"glTF 1\.0 can't be read, only glTF 2\.0; convert it first: gltf-pipeline -i person\.glb",
+        ),
+        ({"version": "2.1", "minVersion": "2.1"}, r"glTF 2\.1 can't be read"),
+        ({"version": "3.0"}, r"glTF 3\.0 can't be read"),
+        ({}, "does not say which glTF it is"),
+    ],
+)
+def test_another_gltf_than_2_0_is_refused_with_the_way_out(tmp_path, asset, sentence):
+    with pytest.raises(BodyError, match=sentence):
+        import_body(saved(tmp_path, changed(lambda document: document.update(asset=asset))))
+
+
+def test_a_text_file_of_gltf_1_0_is_refused_for_its_version_not_for_how_it_is_written(tmp_path):
+    text = json.dumps({"asset": {"version": "1.0"}, "buffers": {"body": {"uri": "body.bin"}}})
+    with pytest.raises(BodyError, match=r"glTF 1\.0 can't be read"):
+        import_body(saved(tmp_path, text.encode(), "person.gltf"))
+
+
+def test_a_later_minor_version_that_asks_for_2_0_only_is_read(tmp_path):
+    later = changed(lambda document: document.update(asset={"version": "2.1", "minVersion": "2.0"}))
+    assert import_body(saved(tmp_path, later)).stature > 1.7
+
+
+def test_vertices_without_weights_walk_with_their_neighbours_and_are_counted(tmp_path):
+    """Every third vertex has lost its weights; the nearest one that has some is millimetres away."""
+    container = read_container(MAN, "man")
+    block = bytearray(container.buffers[0])
+    for mesh in container.document["meshes"]:
+        for primitive in mesh["primitives"]:
+            accessor = container.document["accessors"][primitive["attributes"]["WEIGHTS_0"]]
+            view = container.document["bufferViews"][accessor["bufferView"]]
+            start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+            for row in range(0, accessor["count"], 3):
+                block[start + 4 * row : start + 4 * row + 4] = bytes(4)
+    spoiled = write_container(Container(container.document, (bytes(block),)))
+    body, explained = import_and_explain(saved(tmp_path, spoiled))
+    whole = import_body(saved(tmp_path, MAN, "whole.glb"))
+    count = sum(len(s.positions) for s in body.levels[0])
+    lost = sum(-(-len(s.positions) // 3) for s in body.levels[0])
+    assert any(f"{lost} of {count} vertices have no joint weights" in sentence for sentence in explained.problems)
+    for ours, theirs in zip(body.levels[0], whole.levels[0], strict=True):
+        dense = [np.zeros((len(s.positions), len(JOINTS))) for s in (ours, theirs)]
+        for s, matrix in zip((ours, theirs), dense, strict=True):
+            np.add.at(matrix, (np.arange(len(matrix))[:, None], s.joints), s.weights)
+        apart = np.abs(dense[0] - dense[1]).sum(axis=1)
+        assert np.median(apart) < 0.05
+        assert np.mean(apart) < 0.12
+
+
+def armature(**transform):
+    """A change that hangs the whole person on a node with this transform."""
+
+    def change(document):
+        document["nodes"].append({"children": [0], "name": "armature", **transform})
+        document["scenes"][0]["nodes"][0] = len(document["nodes"]) - 1
+
+    return change
+
+
+def other_names(document):
+    for node in document["nodes"]:
+        role = node.get("name", "")
+        if role.startswith(("left", "right")):
+            node["name"] = role.replace("left", "?").replace("right", "left").replace("?", "right")
+
+
+def _outwards(surface) -> float:
+    """Six times the volume inside a surface: negative when its inside is seen."""
+    a, b, c = (surface.positions[surface.triangles[:, i]] for i in range(3))
+    return float(np.sum(a * np.cross(b, c)))
+
+
+@pytest.mark.parametrize("change", [armature(scale=[-1, 1, 1]), armature(scale=[1, 1, -1]), other_names])
+def test_a_mirrored_character_looks_ahead_and_is_seen_from_outside(tmp_path, change):
+    body, explained = import_and_explain(saved(tmp_path, changed(change)))
+    joints = dict(zip(JOINTS, body.skeleton.positions, strict=True))
+    assert joints["leftToes"][2] > joints["leftFoot"][2] + 0.08
+    assert joints["leftUpperArm"][0] > 0.1
+    assert all(_outwards(s) > 0 for s in body.levels[0] if s.name in ("skin", "shirt", "trousers", "shoes"))
+    assert any("left and right" in sentence for sentence in explained.problems)
+
+
+@pytest.mark.parametrize("angle", [15.0, 30.0, 75.0])
+def test_a_character_that_leans_in_its_scene_walks_upright(tmp_path, angle):
+    turn = [0, 0, np.sin(np.radians(angle) / 2), np.cos(np.radians(angle) / 2)]
+    body = import_body(saved(tmp_path, changed(armature(rotation=turn))))
+    assert np.allclose(body.skeleton.positions, load_body("man").skeleton.positions, atol=0.005)
+
+
+def test_of_two_people_in_a_file_one_walks_and_the_other_is_left_out_with_a_sentence(tmp_path):
+    def twice(document):
+        count = len(document["nodes"])
+        second = json.loads(json.dumps(document["nodes"]))
+        for node in second:
+            node["children"] = [child + count for child in node.get("children", [])] or [count - 1 + count]
+            if node["children"] == [2 * count - 1]:
+                del node["children"]
+            if "skin" in node:
+                node["skin"] = 1
+        document["nodes"] += second
+        document["skins"].append(
+            {**document["skins"][0], "joints": [j + count for j in document["skins"][0]["joints"]]}
+        )
+
+    body, explained = import_and_explain(saved(tmp_path, changed(twice)))
+    alone = import_body(saved(tmp_path, MAN, "alone.glb"))
+    assert sum(len(s.positions) for s in body.levels[0]) == sum(len(s.positions) for s in alone.levels[0])
+    assert any("one person per file" in sentence for sentence in explained.problems)
+
+
+@pytest.mark.parametrize("mode", [5, 6])
+def test_strips_and_fans_are_drawn_as_triangles_that_keep_their_side(mode):
+    """A square as a strip 0 1 2 3 and as a fan 0 1 3 2, both counter-clockwise (glTF 2.0, section 3.7.2.1)."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], np.float32)
+    order = np.array([0, 1, 2, 3] if mode == 5 else [0, 1, 3, 2], np.uint8)
+    document = {
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 4}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5121, "count": 4, "type": "SCALAR"},
+        ],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "mode": mode}]}],
+    }
+    (primitive,) = read_scene(Container(document, (corners.tobytes() + order.tobytes(),)), "square").primitives
+    a, b, c = (primitive.positions[primitive.triangles[:, i]] for i in range(3))
+    areas = 0.5 * np.cross(b - a, c - a)[:, 2]
+    assert np.allclose(areas, [0.5, 0.5])
+
+
+def test_what_is_not_drawn_is_said(tmp_path):
+    def more(document):
+        document["meshes"][0]["weights"] = [0.5]
+        document["meshes"][0]["primitives"].append({**document["meshes"][0]["primitives"][0], "mode": 1})
+
+    _, explained = import_and_explain(saved(tmp_path, changed(more)))
+    said = " ".join(explained.problems)
+    for part in ("painted vertex by vertex", "points or lines", "morph targets"):
+        assert part in said
 
 
 @settings(max_examples=120, deadline=None)

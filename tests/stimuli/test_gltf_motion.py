@@ -170,3 +170,8 @@ def test_no_value_anywhere_in_the_file_escapes_as_another_error(tmp_path_factory
     except MotionFileError:
         return
     assert np.all(np.isfinite(world_positions(clip)))
+
+
+def test_a_motion_in_gltf_1_0_is_refused(tmp_path):
+    with pytest.raises(MotionFileError, match=r"is glTF 1\.0; only glTF 2\.0 can be read"):
+        read_gltf_motion(written(tmp_path, document() | {"asset": {"version": "1.0"}}))
