@@ -8,6 +8,7 @@ from pathlib import Path
 import pandas as pd
 
 from analysis.apa import anova_sentence
+from analysis.derived_files import report_of, write_derived
 from analysis.errors import AnalysisError
 from analysis.figures.check_plots import check_plots, check_quantiles, quantiles_table
 from analysis.figures.checks import session_course
@@ -22,7 +23,7 @@ from analysis.report.headlines import headlines
 from analysis.report.latex import latex_tables
 from analysis.report.page import Drawn, report
 from analysis.statistics.marginal_means import emmeans_of, marginal_means
-from analysis.writing import table_bytes, write_bytes
+from analysis.writing import table_bytes
 
 
 @dataclass(frozen=True)
@@ -40,13 +41,15 @@ class AnalysisOutcome:
         return next(path for path in self.paths if path.name == "report.html")
 
 
-def analyse(study_folder: Path, out: Path, unfinished: bool = False) -> AnalysisOutcome:
+def analyse(study_folder: Path, out: Path, unfinished: bool = False, over_edits: bool = False) -> AnalysisOutcome:
     """Run the analysis planned in the study file of the recorded runs, and write its results into `out`.
 
     study_folder: DATA/<study>, with one journal a run under sourcedata; unfinished: include runs that
-    were not finished. Writes trials.csv, cell_means.csv, descriptives.csv, anova.csv, posthoc.csv,
-    ttests.csv, normality.csv, assumptions.csv, qq.csv, a table for each further planned test, tables.tex,
-    the planned figures (PNG and SVG) and report.html; further measures get a folder each. What cannot be
+    were not finished; over_edits: replace also files of an earlier report that a person has changed.
+    Writes trials.csv, cell_means.csv, descriptives.csv, anova.csv, posthoc.csv, ttests.csv, normality.csv,
+    assumptions.csv, qq.csv, a table for each further planned test, tables.tex, the planned figures (PNG and
+    SVG) and report.html; further measures get a folder each. Files of an earlier report of the same data are
+    replaced or removed, others never. What cannot be
     computed (too few participants, say) is a warning; the tables of what was recorded are still written. The
     same journals give the same bytes. Raises AnalysisError for what a person must put right.
     """
@@ -68,7 +71,7 @@ def analyse(study_folder: Path, out: Path, unfinished: bool = False) -> Analysis
     also = [_of_one_measure(other, f"{other.plan.measure}/", files, drawn) for other in results.also]
     results = replace(results, also=tuple(also))
     files["report.html"] = report(results, drawn, [*files, "report.html"]).encode("utf-8")
-    paths = [write_bytes(out / name, content) for name, content in files.items()]
+    paths = write_derived(out, report_of(first.header), files.items(), over_edits)
     return AnalysisOutcome(
         tuple(paths),
         (

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from analysis.derived_files import export_of, write_derived
 from analysis.errors import AnalysisError
 from analysis.exports.runs import ExportedRun, read_runs
-from analysis.exports.tree import write_tree
 from analysis.recorded.journal import earlier_form
 
 Files = Iterator[tuple[str, bytes]]
@@ -35,7 +35,7 @@ def export(folder: Path, to: str, out: Path, over_edits: bool = False) -> Export
     if out.resolve() == Path(folder).resolve() or (Path(folder) / "sourcedata").resolve() in out.resolve().parents:
         raise AnalysisError(f"--out {out}: an export goes into a folder of its own, never among the journals.")
     runs, left_out = read_runs(Path(folder))
-    paths = write_tree(out, _files(to)(runs), over_edits)
+    paths = write_derived(out, export_of(runs[0].header), _files(to)(runs), over_edits)
     if to == "psych-ds":
         from analysis.exports.psych_ds_rules import psych_ds_problems
 

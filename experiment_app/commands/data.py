@@ -121,22 +121,18 @@ def withdraw(
 
 def _make_again(folder: Path, made: Derived) -> None:
     """Makes an export or a report again from the journals that are left; removes one nobody is left in."""
+    from analysis.derived_files import export_of, remove_derived, report_of
     from analysis.exports.exporting import export as write_export
-    from analysis.exports.tree import remove_tree
     from analysis.planned_analysis import analyse
     from experiment_app.participants.arrivals import journals
 
-    somebody = bool(journals(folder))
-    if made.what == "report":
-        new = analyse(folder, Path(made.out)).paths if somebody else ()
-        for stale in {Path(made.out) / name for name in made.files} - set(new):
-            stale.unlink(missing_ok=True)
-        if not any(Path(made.out).iterdir()):
-            Path(made.out).rmdir()
-    elif somebody:
-        write_export(folder, made.to, Path(made.out), over_edits=True)
+    folder_of_it = Path(made.out)
+    if not journals(folder):
+        remove_derived(folder_of_it, report_of({}) if made.what == "report" else export_of({}))
+    elif made.what == "report":
+        analyse(folder, folder_of_it, over_edits=True)
     else:
-        remove_tree(Path(made.out))
+        write_export(folder, made.to, folder_of_it, over_edits=True)
 
 
 def _sure(participant: str) -> bool:

@@ -32,8 +32,7 @@ def analyse(
         out.print(sentence, markup=False)
     for path in outcome.paths:
         out.print(f"  {path}", markup=False)
-    names = tuple(path.relative_to(out_folder).as_posix() for path in outcome.paths)
-    note_derived(folder, Derived("report", "", str(out_folder.resolve()), names))
+    note_derived(folder, Derived("report", "", str(out_folder.resolve())))
     return 0
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 DERIVED = "derived.jsonl"
@@ -14,14 +14,13 @@ DERIVED = "derived.jsonl"
 class Derived:
     """One export or report.
 
-    what: "export" or "report"; to: the export's format, "" for a report; out: its folder, an absolute path.
-    files: what a report is made of, by name inside `out`; an export keeps its own list.
+    what: "export" or "report"; to: the export's format, "" for a report; out: its folder, an absolute path, which
+    keeps a list of the files.
     """
 
     what: str
     to: str
     out: str
-    files: tuple[str, ...] = ()
 
     @property
     def sentence(self) -> str:
@@ -43,11 +42,8 @@ def derived(folder: Path) -> list[Derived]:
         lines = (folder / DERIVED).read_text(encoding="utf-8").splitlines()
     except OSError:
         return []
-    found: dict[tuple[str, str, str], Derived] = {}
+    found: list[Derived] = []
     for line in lines:
         with suppress(ValueError, TypeError):
-            made = Derived(**json.loads(line))
-            place = (made.what, made.to, made.out)
-            files = (*(found[place].files if place in found else ()), *made.files)
-            found[place] = replace(made, files=tuple(dict.fromkeys(files)))
-    return [made for made in found.values() if Path(made.out).is_dir()]
+            found.append(Derived(**json.loads(line)))
+    return [made for made in dict.fromkeys(found) if Path(made.out).is_dir()]

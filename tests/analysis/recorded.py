@@ -30,6 +30,7 @@ def journal_lines(
     number: int,
     text: str | None = None,
     *,
+    study: str = "walk_ratio",
     sex: str | None = None,
     simulated: bool = True,
     reason: str | None = "finished",
@@ -40,7 +41,7 @@ def journal_lines(
     preferred = {actor: rng.normal(mean, sd) for actor, (mean, sd) in PERCEIVED.items()}
     records: list[Any] = [
         Header(
-            "walk_ratio",
+            study,
             "c0ffee" * 10,
             text or study_text(),
             participant,

@@ -294,7 +294,7 @@ def test_an_export_never_touches_files_it_did_not_write_and_removes_its_own_stal
     assert not (out / "sub-P01").exists()
     assert (out / "notes.txt").read_text() == "mine"
     (out / "README.md").write_text("edited by hand")
-    with pytest.raises(AnalysisError, match=r"README\.md was changed since it was exported"):
+    with pytest.raises(AnalysisError, match=r"README\.md was changed since the export was made"):
         export(data, "csv", out)
     with pytest.raises(AnalysisError, match="never among the journals"):
         export(data, "csv", data)

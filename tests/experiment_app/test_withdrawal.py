@@ -116,4 +116,4 @@ def test_exports_and_reports_are_noted_once_however_often_they_are_made(data, tm
     for _ in range(2):
         run(["export", str(data), "--to", "csv", "--out", str(tmp_path / "csv")])
     (line,) = (data / "derived.jsonl").read_text(encoding="utf-8").splitlines()
-    assert json.loads(line) == {"what": "export", "to": "csv", "out": str(tmp_path / "csv"), "files": []}
+    assert json.loads(line) == {"what": "export", "to": "csv", "out": str(tmp_path / "csv")}
