@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +20,7 @@ from stimuli.kinematics import rotation_matrices, skinning_matrices
 from stimuli.kinematics import world_joints as world_joints
 from stimuli.legs import contact
 from stimuli.legs.contact import Sole
-from stimuli.legs.two_bone import STRAIGHTEST, Leg, solve
+from stimuli.legs.two_bone import FURTHEST, STRAIGHTEST, Leg, solve
 from stimuli.rotations import from_matrix
 from stimuli.skeleton import JOINTS, Floats, Pose
 
@@ -59,6 +59,7 @@ def drawn_pose(actor: Actor, speed: float, step_frequency: float, phase: float) 
         place = ahead + stride * float(contact.footprint_travel(own, stance))
         feet.append(_placed_foot(actor.figure.sole, channels, clock, place, stride))
     sockets = [turn @ leg.hip for leg in actor.figure.legs]
+    feet = [_nearer(*each) for each in zip(actor.figure.legs, (hips + socket for socket in sockets), feet, strict=True)]
     hips[1] -= _lowering(actor.figure.legs, hips, sockets, feet)
     turns = np.empty((8, 3, 3))
     for side, (leg, socket, foot) in enumerate(zip(actor.figure.legs, sockets, feet, strict=True)):
@@ -72,6 +73,14 @@ def drawn_pose(actor: Actor, speed: float, step_frequency: float, phase: float) 
     rotations[UPPER_INDICES] = upper
     rotations[LEG_INDICES] = from_matrix(turns)
     return Pose(hips=hips, rotations=rotations)
+
+
+def standing(actor: Actor, speed: float, step_frequency: float, phase: float) -> tuple[bool, bool]:
+    """Whether the left and the right foot stand at this phase of the drawn walk; arguments as for `drawn_pose`."""
+    weighted = blend_weights(actor.tree, {"speed": speed, "step_frequency": step_frequency})
+    contacts = np.fromiter(weighted.values(), dtype=np.float64) @ actor.table.contacts[list(weighted)]
+    own = ((phase - float(contacts[4])) % 1.0, phase % 1.0)
+    return own[0] < float(contacts[0]), own[1] < float(contacts[1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +104,20 @@ def _placed_foot(sole: Sole, channels: Floats, clock: float, place: float, strid
     ankle = (side + sine * forward, up + clearance, place + stride * travel + cosine * forward)
     heading = np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
     return _Foot(ankle, heading @ _toes_up(pitch), bend, knee_yaw, clearance)
+
+
+def _nearer(leg: Leg, hip: Floats, foot: _Foot) -> _Foot:
+    """The foot, brought along the ground to where its leg reaches if the step is too long for it.
+
+    It keeps its height, so that the sole neither sinks nor floats; what gives way is its place, and it slides.
+    """
+    x, up, z = foot.ankle
+    aside, ahead = x - float(hip[0]), z - float(hip[2])
+    far, furthest = math.hypot(aside, ahead), FURTHEST * leg.length
+    if far <= furthest:
+        return foot
+    share = furthest / far
+    return replace(foot, ankle=(float(hip[0]) + share * aside, up, float(hip[2]) + share * ahead))
 
 
 def _lowering(legs: Sequence[Leg], hips: Floats, sockets: Sequence[Floats], feet: Sequence[_Foot]) -> float:

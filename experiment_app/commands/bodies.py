@@ -83,7 +83,7 @@ def body_report(file: Path) -> dict[str, Any]:
 
     from stimuli.actors import load_actor
     from stimuli.bodies.known import scaled
-    from stimuli.bodies.retarget import on_its_own_soles, sole_gaps
+    from stimuli.bodies.retarget import longest_step, on_its_own_soles, sole_gaps
     from stimuli.body_files.imported import bounding_box, import_and_explain
     from stimuli.skeleton import JOINTS
 
@@ -94,7 +94,9 @@ def body_report(file: Path) -> dict[str, Any]:
     points = np.concatenate([s.positions for s in body.levels[0]])
     actor = load_actor("M1", body)
     grown = scaled(body, actor.height)
-    lowest, highest = sole_gaps(on_its_own_soles(actor, grown), grown)
+    walker = on_its_own_soles(actor, grown)
+    lowest, highest = sole_gaps(walker, grown)
+    made, asked = longest_step(walker)
     return {
         "file": file.name,
         "joints_told_by": explained.source,
@@ -115,6 +117,7 @@ def body_report(file: Path) -> dict[str, Any]:
             "high": [round(float(v), 5) for v in points.max(axis=0)],
         },
         "soles_mm": {"lowest": round(lowest, 2), "highest": round(highest, 2)},
+        "longest_step_m": {"without_a_slide": round(made, 3), "asked_of_it": round(asked, 3)},
         "problems": list(explained.problems),
     }  # fmt: skip
 
@@ -141,10 +144,16 @@ def report_lines(report: dict[str, Any]) -> list[str]:
         lines.append(f"{report['props_left_out']} meshes hang on no skin (props) and are left out.")
     soles = report["soles_mm"]
     lines.append(
-        f"Walking as M1 its lowest point is {soles['lowest']:.1f} to {soles['highest']:.1f} mm from the ground."
+        f"Walking as M1 its standing soles are {soles['lowest']:z.1f} to {soles['highest']:z.1f} mm from the ground."
     )
     if max(abs(soles["lowest"]), abs(soles["highest"])) > 5:
         lines.append("Note: that is more than 5 mm; the feet will be seen to float or sink.")
+    steps = report["longest_step_m"]
+    if steps["without_a_slide"] < steps["asked_of_it"]:
+        lines.append(
+            f"Note: its legs are too short for steps of more than {steps['without_a_slide']:.2f} m at M1's height; in "
+            f"longer ones (actors make up to {steps['asked_of_it']:.2f} m) its feet slide."
+        )
     return [*lines, *(f"Note: {sentence}" for sentence in report["problems"])]
 
 

@@ -13,18 +13,24 @@ from functools import cached_property
 
 import numpy as np
 
-from stimuli.actors import Actor
-from stimuli.bodies.body import Body
+from stimuli.actors import CYCLE_SPEEDS, METRONOME, Actor
+from stimuli.blend import SIDES
+from stimuli.bodies.body import Body, Surface
 from stimuli.bodies.skinning import skin
 from stimuli.legs.contact import Sole
+from stimuli.measure import delivered_gait
 from stimuli.retarget import Figure
 from stimuli.skeleton import JOINTS, Floats
-from stimuli.walker import drawn_pose, skin_matrices
+from stimuli.walker import drawn_pose, skin_matrices, standing
 
-_FEET = [index for index, name in enumerate(JOINTS) if name.endswith(("Foot", "Toes"))]
+SLIDES = 5.0
+"""mm, drift of a standing foot from which it is said to slide."""
 
-ROLL = np.radians(20.0)
-"""About the pitch of a foot at heel strike (Winter 1991), and of toes as they leave the ground."""
+ROLLS = np.radians(np.linspace(4.0, 32.0, 15))
+"""Pitches of a foot from heel strike until it stands flat (20 to 30 degrees and less, Winter 1991), and of toes as they
+leave the ground."""
+
+PIVOTS_TRIED = 201
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,8 +52,8 @@ def on_its_own_soles(actor: Actor, body: Body) -> Actor:
 def sole_of(body: Body) -> Sole:
     """Heel, ball and tip of the right foot as drawn; a foot whose toes move nothing rolls over its tip.
 
-    Heel and tip are where a foot turned by ROLL about them would touch: for a rounded shoe a little beyond its flat
-    part, so that what is round does not sink.
+    Heel and tip are where a foot turned by ROLLS about them would touch: for a rounded shoe a little beyond its flat
+    part, so that what is round neither sinks nor floats much.
     """
     foot, toes = _carried(body, "rightFoot"), _carried(body, "rightToes")
     places = body.skeleton.positions
@@ -57,40 +63,82 @@ def sole_of(body: Body) -> Sole:
         return Sole.of(body.skeleton)
     ground = float(everything[:, 1].min())
     height = float(ankle[1]) - ground
-    heel = max(_pivot(everything - ankle, height, ROLL), 0.01)
+    heel = max(_pivot(everything - ankle, height, ROLLS), 0.01)
     ball, ball_height = float(joint[2] - ankle[2]), max(float(joint[1]) - ground, 0.0)
     if len(toes) >= 3 and ball > 0.02:
-        ahead = _pivot(toes - joint, ball_height, -ROLL)
+        ahead = _pivot(toes - joint, ball_height, -ROLLS)
         if ahead > 0.0:
             return Sole(height, heel, ball, ball_height, ball + ahead)
-    tip = max(_pivot(everything - ankle, height, -ROLL), 0.02)
+    tip = max(_pivot(everything - ankle, height, -ROLLS), 0.02)
     return Sole(height, heel, tip, 0.0, tip)
 
 
-def _pivot(points: Floats, height: float, pitch: float) -> float:
-    """m along the ground from a joint to the point it rolls on when turned toes-up by pitch; height: of the joint."""
-    up = points[:, 1] * np.cos(pitch) + points[:, 2] * np.sin(pitch)
-    return float((-up.min() - height * np.cos(pitch)) / np.sin(abs(pitch)))
+def _pivot(points: Floats, height: float, pitches: Floats) -> float:
+    """m along the ground from a joint to the point it rolls on when turned by pitches (P,) rad, toes-up positive.
 
-
-def sole_gaps(actor: Actor, body: Body, phases: int = 48) -> tuple[float, float]:
-    """mm: lowest and highest place of the lowest drawn sole vertex over a cycle at the actor's comfort.
-
-    One foot always stands when walking, so both would be 0 for a perfect sole; negative is below the ground.
+    points: (N, 3) m from the joint, which stands `height` above the ground. A sharp edge has one such point; of a round
+    one it moves, and the one is chosen whose largest height above or below the ground is least.
     """
-    feet = [
-        replace(s, positions=s.positions[low], normals=s.normals[low], joints=s.joints[low], weights=s.weights[low])
-        for s in body.levels[0]
-        if (low := np.isin(s.joints[np.arange(len(s.joints)), np.argmax(s.weights, axis=1)], _FEET)).any()
-    ]
-    if not feet:
-        return 0.0, 0.0
-    lowest = []
+    up = points[:, 1:2] * np.cos(pitches) + points[:, 2:3] * np.sin(pitches)
+    sizes = np.sin(np.abs(pitches))
+    exact = (-up.min(axis=0) - height * np.cos(pitches)) / sizes
+    tried = np.linspace(float(exact.min()), float(exact.max()), PIVOTS_TRIED)
+    return float(tried[np.argmin(np.max(np.abs(tried[:, None] - exact) * sizes, axis=1))])
+
+
+def sole_gaps(
+    actor: Actor, body: Body, gait: tuple[float, float] | None = None, phases: int = 48
+) -> tuple[float, float]:
+    """mm: lowest place of any drawn sole vertex over a cycle, and highest place of the lowest one of a standing foot.
+
+    Both would be 0 for a perfect sole; negative is below the ground. gait: speed (m/s) and step frequency (steps/min),
+    the actor's comfort if left out.
+    """
+    speed, step_frequency = gait or (actor.comfort_speed, actor.comfort_step_frequency)
+    feet = [_foot_alone(body, side) for side in SIDES]
+    lowest, highest = 0.0, 0.0
     for number in range(phases):
-        pose = drawn_pose(actor, actor.comfort_speed, actor.comfort_step_frequency, number / phases)
-        matrices = skin_matrices(actor, pose)
-        lowest.append(min(float(skin(foot, matrices)[0][:, 1].min()) for foot in feet))
-    return 1000.0 * min(lowest), 1000.0 * max(lowest)
+        phase = number / phases
+        matrices = skin_matrices(actor, drawn_pose(actor, speed, step_frequency, phase))
+        for foot, stands in zip(feet, standing(actor, speed, step_frequency, phase), strict=True):
+            if foot:
+                up = min(float(skin(part, matrices)[0][:, 1].min()) for part in foot)
+                lowest = min(lowest, up)
+                highest = max(highest, up) if stands else highest
+    return 1000.0 * lowest, 1000.0 * highest
+
+
+def longest_step(actor: Actor) -> tuple[float, float]:
+    """m: the longest step that the actor's legs make without a slide, and the longest it is asked for.
+
+    Looked for at the slowest step frequency the default actors walk at, over their speeds; what slides by more than
+    SLIDES is a leg too short for the step (walker.py).
+    """
+    slowest = METRONOME[0]
+    made = 0.0
+    for speed in np.linspace(CYCLE_SPEEDS[0], CYCLE_SPEEDS[-1], 25):
+        try:
+            slide = delivered_gait(actor, float(speed), slowest, samples=120).slide_peak
+        except ValueError:  # a foot that drags so much strikes twice or never
+            break
+        if slide > SLIDES:
+            break
+        made = 60.0 * float(speed) / slowest
+    return made, 60.0 * CYCLE_SPEEDS[-1] / slowest
+
+
+def _foot_alone(body: Body, side: str) -> list[Surface]:
+    """The parts of the finest level that a foot or its toes carry most."""
+    indices = [JOINTS.index(f"{side}Foot"), JOINTS.index(f"{side}Toes")]
+    parts = []
+    for s in body.levels[0]:
+        own = np.isin(s.joints[np.arange(len(s.joints)), np.argmax(s.weights, axis=1)], indices)
+        if own.any():
+            parts.append(
+                replace(s, positions=s.positions[own], normals=s.normals[own], joints=s.joints[own],
+                        weights=s.weights[own])
+            )  # fmt: skip
+    return parts
 
 
 def _carried(body: Body, joint: str) -> Floats:

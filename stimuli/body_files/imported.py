@@ -16,7 +16,8 @@ from stimuli.body_files.materials import Material, read_materials
 from stimuli.body_files.meshes import Primitive
 from stimuli.body_files.notes import notes_on_document, notes_on_meshes, notes_on_skeleton
 from stimuli.body_files.scene import GltfScene, placed_vertices, read_scene
-from stimuli.skeleton import JOINTS, PARENTS, Floats, Skeleton
+from stimuli.body_files.weights import four_largest, per_role, with_stiff_soles
+from stimuli.skeleton import PARENTS, Floats, Skeleton
 
 WITH_WEIGHTS = "export it with its armature and skin weights"
 MOST_MATERIALS = 24  # as the renderer's shaders have room for
@@ -171,7 +172,8 @@ def _surface(
 ) -> Surface:
     positions = points @ person.to_person[:, :3].T + person.to_person[:, 3]
     assert primitive.weights is not None
-    joints, weights = _four(person.places[carried], primitive.weights)
+    dense = per_role(person.places[carried], primitive.weights)
+    joints, weights = four_largest(with_stiff_soles(dense, positions, person.positions))
     places = None
     picture = material.picture
     if picture is not None and material.texture_set < len(primitive.texture_places):
@@ -229,16 +231,6 @@ def _joined(group: list[Surface]) -> Surface:
         triangles=np.concatenate([s.triangles + start for s, start in zip(group, starts, strict=True)]),
         picture_at=np.concatenate(places) if places else None,
     )
-
-
-def _four(places: Floats, weights: Floats) -> tuple[Integers, Floats]:
-    """(V, 4) joints and weights: summed per role, the four largest kept."""
-    dense = np.zeros((len(places), len(JOINTS)))
-    for column in range(places.shape[1]):
-        np.add.at(dense, (np.arange(len(places)), places[:, column].astype(np.int64)), weights[:, column])
-    order = np.argsort(-dense, axis=1, kind="stable")[:, :4]
-    kept = np.take_along_axis(dense, order, axis=1)
-    return order, kept / kept.sum(axis=1, keepdims=True)
 
 
 def _normals(positions: Floats, triangles: Integers) -> Floats:

@@ -13,7 +13,7 @@ from numba import njit
 
 from stimuli.crowds.table import DEPTH_ORDER, PLANES, UPPER_COUNT, Mix, Singles
 from stimuli.legs.contact import ARRIVAL, FLAT_ZONE, STANCE_END, TOE_BEND_LIMIT, TOE_BEND_SOFTNESS
-from stimuli.legs.two_bone import STRAIGHTEST
+from stimuli.legs.two_bone import FURTHEST, STRAIGHTEST
 from stimuli.skeleton import JOINTS, PARENTS, Floats
 from stimuli.walker import LOWERING_SOFTNESS
 
@@ -178,6 +178,10 @@ def _pose_legs(legs: Any, marks: Any, places: Any, turn: Any) -> None:
         for row in range(3):
             socket = hips_turn[3 * row] * leg[2] + hips_turn[3 * row + 1] * leg[3] + hips_turn[3 * row + 2] * leg[4]
             way[row] = mark[row] - hips[row] - socket
+        far = sqrt(way[0] * way[0] + way[2] * way[2])
+        if far > FURTHEST * (leg[0] + leg[1]):
+            way[0] *= FURTHEST * (leg[0] + leg[1]) / far
+            way[2] *= FURTHEST * (leg[0] + leg[1]) / far
         reach = STRAIGHTEST * (leg[0] + leg[1])
         room = sqrt(max(reach * reach - way[0] * way[0] - way[2] * way[2], 0.0))
         lowering += LOWERING_SOFTNESS * _softly_positive((-way[1] - room - mark[7]) / LOWERING_SOFTNESS)

@@ -14,7 +14,7 @@ import numpy as np
 from stimuli.blend import FOOT_CHANNELS
 from stimuli.crowds.table import PLANES, UPPER_COUNT, Constants, Mix, Singles
 from stimuli.legs import contact
-from stimuli.legs.two_bone import STRAIGHTEST
+from stimuli.legs.two_bone import FURTHEST, STRAIGHTEST
 from stimuli.skeleton import JOINTS, Floats
 from stimuli.walker import LOWERING_SOFTNESS
 
@@ -129,6 +129,9 @@ def _pose_legs(mix: Mix, phase: Floats, hips: Singles, turn: Singles) -> None:
     ankle = (aside + sine * forward, up + clearance, place.astype(np.float32) + stride * travel + cosine * forward)
     socket = _turned(turn[:, :1], legs.hip)
     dx, dy, dz = (ankle[axis] - (hips[axis] + socket[axis]) for axis in range(3))
+    far = np.sqrt(dx * dx + dz * dz)
+    nearer = np.minimum(1.0, np.float32(FURTHEST) * (legs.thigh + legs.shank) / np.maximum(far, np.float32(1e-6)))
+    dx, dz = nearer * dx, nearer * dz
     reach = STRAIGHTEST * (legs.thigh + legs.shank)
     room = np.sqrt(np.maximum(reach * reach - dx * dx - dz * dz, 0.0))
     excess = (-dy - room - clearance) * np.float32(1.0 / LOWERING_SOFTNESS)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from stimuli.legs import contact
 from stimuli.legs.contact import Sole
 from stimuli.legs.foot_paths import PHASES, SAMPLES, FootPath, heel_rises, pitched, smoothed, still_in_stance
-from stimuli.legs.two_bone import Leg, reach
+from stimuli.legs.two_bone import FURTHEST, Leg, reach
 from stimuli.skeleton import Floats
 
 Bools = NDArray[np.bool_]
@@ -195,7 +195,8 @@ def _height(leg: Leg, paths: Sequence[LegPath], harmonics: Floats, advance: Floa
             - (behind + foot.ankle[:, 2] - path.hip[:, 2]) ** 2
         )
         wanted.append(foot.ankle[:, 1] - path.vector[:, 0] - path.hip[:, 1])
-        ceiling.append(foot.ankle[:, 1] + np.sqrt(np.maximum(room, 1e-4)) - path.hip[:, 1])
+        lowest = leg.length * np.sqrt(1.0 - FURTHEST**2)  # a foot that is further away gives way, not the hips
+        ceiling.append(foot.ankle[:, 1] + np.sqrt(np.maximum(room, lowest**2)) - path.hip[:, 1])
         weight.append(path.standing / (np.maximum(path.knee, 0.0) + 0.05) ** 2 * np.where(PHASES < 0.1, 2.0, 1.0))
         standing.append(foot.stance - 0.17 > PHASES)
     parts = [np.asarray(np.concatenate(part)) for part in (wanted, ceiling, weight)]

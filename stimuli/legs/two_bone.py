@@ -16,6 +16,11 @@ from stimuli.skeleton import JOINTS, Floats, Skeleton
 STRAIGHTEST = 0.99995
 """Largest hip-ankle distance over the leg's length: a knee keeps a degree of bend and never snaps straight."""
 
+FURTHEST = 0.92
+"""Largest distance along the ground from hip to ankle over the leg's length: the leg is 67 degrees off upright. People
+stay below 0.71 in their longest steps; beyond, a figure whose legs are too short for the step does the splits, and its
+foot gives way along the ground instead (walker.py)."""
+
 Vector = tuple[float, float, float]
 
 

@@ -18,6 +18,7 @@ from stimuli.crowds.table import WalkTable, mixed
 from stimuli.legs.contact import Sole
 from stimuli.retarget import Figure
 from stimuli.walker import drawn_pose, skin_matrices
+from tests.stimuli.short_legs import short_legged
 
 SAME = 1e-4
 """Of each element of a matrix; the turns have no unit, the places are in metres."""
@@ -48,6 +49,7 @@ def people():
     actors.append(on_its_own_soles(actors[2], scaled(load_body("man"), actors[2].height)))
     actors.append(replace(actors[0], figure=_odd_soled(actors[0].figure)))
     actors.append(replace(actors[2], table=_limping(actors[2].table)))
+    actors.append(load_actor("F2", short_legged(load_body("woman"))))
     return actors, WalkTable.of([(actor.figure, actor.table, actor.tree) for actor in actors])
 
 
@@ -65,7 +67,7 @@ def _odd_soled(figure):
 
 walks = st.lists(
     st.tuples(
-        st.integers(0, 6),
+        st.integers(0, 7),
         st.one_of(st.floats(0.7, 1.42), st.sampled_from((0.7, 0.88, 1.06, 1.42))),
         st.one_of(st.floats(80.0, 120.0), st.sampled_from((80.0, 100.0, 120.0))),
         st.floats(-3.0, 3.0),
@@ -92,7 +94,7 @@ def test_a_crowd_is_posed_as_each_of_its_walkers_alone(people, way, walks):
 def test_who_walks_beside_does_not_matter(people, way):
     _, table = people
     rng = np.random.default_rng(3)
-    who, phase = rng.integers(0, 7, 50), rng.random(50)
+    who, phase = rng.integers(0, 8, 50), rng.random(50)
     mix = mixed(table, who, rng.uniform(0.8, 1.2, 50), rng.uniform(80.0, 120.0, 50))
     order = rng.permutation(50)
     whole = many_matrices(way)(mix, phase)
