@@ -27,6 +27,18 @@ def figures(value: float, significant: int = 3) -> str:
     return number(value, min(decimals, 12))
 
 
+def together(*values: float, significant: int = 3) -> list[str]:
+    """Values written side by side: all with the decimals that give the largest of them its significant figures."""
+    largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
+    decimals = max(0, significant - 1 - math.floor(math.log10(largest))) if largest else 0
+    return [number(value, min(decimals, 12)) for value in values]
+
+
+def limits(low: float, high: float) -> str:
+    """An interval by its limits: [−0.0391, 0.0415]."""
+    return f"[{', '.join(together(low, high))}]"
+
+
 def degrees(df: float) -> str:
     """Whole degrees of freedom as they are, corrected ones with three figures: 3, 1.80, 36.2; a dash for none."""
     if not math.isfinite(df):
@@ -78,9 +90,10 @@ def equivalence_sentence(row: Mapping[str, Any]) -> str:
     t = min(row["t_lower"], -row["t_upper"])
     bound = figures(row["upper_bound"])
     verdict = f"equivalent within ±{bound}" if row["equivalent"] else f"not shown to be equivalent within ±{bound}"
+    estimate, low, high = together(row["estimate"], row["ci_low"], row["ci_high"])
     return (
-        f"{where}{row['a']} {MINUS} {row['b']}: {figures(row['estimate'])}, 90 % limits [{figures(row['ci_low'])}, "
-        f"{figures(row['ci_high'])}], TOST t({degrees(row['df'])}) = {number(t)}, {p_value(row['p'])}, {verdict}"
+        f"{where}{row['a']} {MINUS} {row['b']}: {estimate}, 90 % limits [{low}, {high}], "
+        f"TOST t({degrees(row['df'])}) = {number(t)}, {p_value(row['p'])}, {verdict}"
     )
 
 

@@ -166,6 +166,6 @@ def d_prime_sentence(row: dict[str, Any]) -> str:
 
 def threshold_sentence(row: dict[str, Any]) -> str:
     """'threshold 4.31, 95 % CI [3.9, 4.7], just noticeable difference 1.2 (n = 12)'."""
-    limits = f", 95 % CI [{apa.figures(row['ci_low'])}, {apa.figures(row['ci_high'])}]"
+    limits = f", 95 % CI {apa.limits(row['ci_low'], row['ci_high'])}"
     jnd = "" if math.isnan(row["jnd"]) else f", just noticeable difference {apa.figures(row['jnd'])}"
     return f"threshold {apa.figures(row['mean'])}{'' if math.isnan(row['ci_low']) else limits}{jnd} (n = {row['n']})"

@@ -130,7 +130,7 @@ def psychometric_section(test: FurtherTest, results: PlannedResults, plots: Plot
     asked = results.plan.psychometric
     assert asked is not None
     data = test.table[test.table["part"] == "threshold"]
-    limits = [f"[{apa.figures(a)}, {apa.figures(b)}]" for a, b in zip(data["ci_low"], data["ci_high"], strict=True)]
+    limits = [apa.limits(a, b) for a, b in zip(data["ci_low"], data["ci_high"], strict=True)]
     columns: Columns = {
         **({"level": ("", text)} if data["level"].any() else {}),
         "n": (element("i", "n"), str_right), "mean": ("threshold", apa.figures), "sd": ("SD", apa.figures),
@@ -163,7 +163,7 @@ def psychometric_section(test: FurtherTest, results: PlannedResults, plots: Plot
 
 def adaptive_section(test: FurtherTest, results: PlannedResults, plots: Plots) -> Markup:
     data = test.table
-    limits = [f"[{apa.figures(a)}, {apa.figures(b)}]" for a, b in zip(data["ci_low"], data["ci_high"], strict=True)]
+    limits = [apa.limits(a, b) for a, b in zip(data["ci_low"], data["ci_high"], strict=True)]
     columns: Columns = {
         **({"level": ("", text)} if data["level"].any() else {}),
         "n": (element("i", "n"), str_right), "mean": ("threshold", apa.figures), "sd": ("SD", apa.figures),

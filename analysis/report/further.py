@@ -77,7 +77,7 @@ def _equivalence(test: FurtherTest, results: PlannedResults, plots: Mapping[str,
 
 def _regression(test: FurtherTest, results: PlannedResults, plots: Mapping[str, DrawnFigure]) -> Markup:
     data, fit, of = test.table, test.facts, results.plan.regression.of if results.plan.regression else ""
-    limits = [f"[{apa.figures(a)}, {apa.figures(b)}]" for a, b in zip(data["ci_low"], data["ci_high"], strict=True)]
+    limits = [apa.limits(a, b) for a, b in zip(data["ci_low"], data["ci_high"], strict=True)]
     columns: Columns = {
         "term": ("", text), "estimate": (element("i", "b"), apa.figures), "se": ("SE", apa.figures),
         "limits": ("95 % limits", str_right), "beta": ("β", apa.number), "t": (T, apa.number), "p": (P, p_cell),

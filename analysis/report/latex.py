@@ -15,6 +15,9 @@ _SPECIAL = {
     "·": r"$\cdot$", "–": "--", "±": r"$\pm$", "≤": r"$\le$", "≥": r"$\ge$", "≠": r"$\ne$", "′": "$'$",
 }  # fmt: skip
 
+WIDEST = 72
+"""Characters of a row, beyond which its label is broken into lines, so that a page of 12 cm holds the table."""
+
 
 def escaped(text: object) -> str:
     """Text that LaTeX prints as it is."""
@@ -56,7 +59,7 @@ def latex_tables(results: PlannedResults) -> str:
             for r in pairs.to_dict("records")
         ]  # fmt: skip
         head = ["Effect", "a", "b", "a $-$ b", "$t$", "df", "$p$"]
-        parts.append(_table(f"Pairs that differ (p adjusted: {plan.adjust})", head, rows))
+        parts.append(_table(f"Pairs that differ (p adjusted: {(plan.adjust or 'none').capitalize()})", head, rows))
     for test in results.further:
         if (written := further_rows(test)) is not None:
             caption, head, body = written
@@ -69,8 +72,14 @@ def _share(value: float) -> str:
 
 
 def _table(caption: str, head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    body = [" & ".join(map(escaped, row)) + r" \\" for row in rows]
+    body = [[escaped(cell) for cell in row] for row in rows]
+    label = "l"
+    if sum(max(len(str(row[column])) for row in rows) for column in range(len(head))) > WIDEST:
+        label = r"p{0.27\linewidth}"
+        body = [[rf"\raggedright {first}", *others] for first, *others in body]
+    columns = label + "r" * (len(head) - 1)
     return "\n".join([
-        r"\begin{table}", rf"\caption{{{escaped(caption)}}}", rf"\begin{{tabular}}{{l{'r' * (len(head) - 1)}}}",
-        r"\toprule", " & ".join(head) + r" \\", r"\midrule", *body, r"\bottomrule", r"\end{tabular}", r"\end{table}",
+        r"\begin{table}", r"\centering\small\setlength{\tabcolsep}{4pt}", rf"\caption{{{escaped(caption)}}}",
+        rf"\begin{{tabular}}{{@{{}}{columns}@{{}}}}", r"\toprule", " & ".join(head) + r" \\", r"\midrule",
+        *(" & ".join(row) + r" \\" for row in body), r"\bottomrule", r"\end{tabular}", r"\end{table}",
     ])  # fmt: skip

@@ -43,7 +43,18 @@ def _percent(name: str) -> Writer:
 
 
 def _limits(low: str, high: str, scale: float = 1.0) -> Writer:
-    return lambda row: f"[{apa.figures(scale * row[low])}, {apa.figures(scale * row[high])}]"
+    return lambda row: apa.limits(scale * row[low], scale * row[high])
+
+
+def _difference(row: Row) -> str:
+    """With the decimals of its limits, which stand beside it."""
+    estimate, *_ = apa.together(row["estimate"], row["ci_low"], row["ci_high"])
+    return estimate
+
+
+def _limits_of_difference(row: Row) -> str:
+    _, low, high = apa.together(row["estimate"], row["ci_low"], row["ci_high"])
+    return f"[{low}, {high}]"
 
 
 def _p(name: str = "p") -> Writer:
@@ -63,10 +74,10 @@ T = {"$t$": _number("t"), "df": _df("df"), "$p$": _p()}
 FORMS: Mapping[str, TableForm] = {
     "comparisons": TableForm("t tests", {
         "": lambda r: f"{_inside(r, 'each')}{' (Welch)' if r['test'] == 'Welch' else ''}",
-        "Difference": _figures("estimate"), r"95 \% CI": _limits("ci_low", "ci_high"), **T, "$d$": _number("d"),
+        "Difference": _difference, r"95 \% CI": _limits_of_difference, **T, "$d$": _number("d"),
     }),
     "pairs": TableForm("Planned pairs of marginal means", {
-        "": lambda r: _inside(r, "by"), "Difference": _figures("estimate"), r"95 \% CI": _limits("ci_low", "ci_high"),
+        "": lambda r: _inside(r, "by"), "Difference": _difference, r"95 \% CI": _limits_of_difference,
         **T, "$d$": _number("d_av"),
     }),
     "proportions": TableForm("Proportions against chance", {
@@ -86,8 +97,8 @@ FORMS: Mapping[str, TableForm] = {
         r"95 \% CI": _limits("ci_low", "ci_high"),
     }),
     "equivalence": TableForm("Equivalence tests (TOST)", {
-        "Pair": lambda r: _inside({**r, "reference": ""}, "by"), "Difference": _figures("estimate"),
-        r"90 \% CI": _limits("ci_low", "ci_high"), "Bounds": lambda r: f"±{apa.figures(r['upper_bound'])}",
+        "Pair": lambda r: _inside({**r, "reference": ""}, "by"), "Difference": _difference,
+        r"90 \% CI": _limits_of_difference, "Bounds": lambda r: f"±{apa.figures(r['upper_bound'])}",
         "df": _df("df"), "$p$": _p(), "Verdict": lambda r: "equivalent" if r["equivalent"] else "not shown",
     }),
     "regression": TableForm("Regression", {

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import csv
+import math
 import re
+import shutil
+import subprocess
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from analysis import AnalysisError, anova
+from analysis import AnalysisError, anova, apa
 from analysis.planned.plan import plan_of, read_plan
 from analysis.planned_analysis import AnalysisOutcome, analyse
 from analysis.recorded.exclusions import matching, selected
@@ -276,6 +279,27 @@ def test_tables_for_latex_escape_what_latex_would_read(analysed: tuple[Path, Pat
     assert r"actor $\times$ speed & " in text
     assert text.count(r"\begin{table}") == text.count(r"\end{table}") >= 2
     assert escaped("50 % of a_b & −1 {x}") == r"50 \% of a\_b \& $-$1 \{x\}"
+
+
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="it needs LaTeX (pdflatex)")
+def test_latex_sets_the_tables_within_its_narrow_page(
+    analysed: tuple[Path, Path, AnalysisOutcome], tmp_path: Path
+) -> None:
+    _, out, _ = analysed
+    page = r"\documentclass{article}\usepackage{booktabs}\begin{document}\input{tables}\end{document}"
+    (tmp_path / "page.tex").write_text(page, encoding="utf-8")
+    (tmp_path / "tables.tex").write_bytes((out / "tables.tex").read_bytes())
+    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "page.tex"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, errors="replace", check=False)
+    assert done.returncode == 0, done.stdout
+    assert [width for width in re.findall(r"Overfull \\hbox \(([\d.]+)pt", done.stdout) if float(width) > 5] == []
+
+
+def test_values_side_by_side_have_the_same_decimals() -> None:
+    """By hand: three figures of 0.0000415 are its seventh decimal; of 25.25, its first."""
+    assert apa.together(0.00000123, -0.0000391, 0.0000415) == ["0.0000012", "−0.0000391", "0.0000415"]
+    assert apa.limits(-1.5, 25.25) == "[−1.5, 25.2]"
+    assert apa.limits(math.nan, 0.0) == "[–, 0]"
 
 
 PLANS = {

@@ -257,9 +257,11 @@ def test_every_test_has_a_table_for_latex(analysed, tmp_path):
     for caption in ("t tests", "planned pairs", "proportions against chance", "sensitivity", "thresholds of the psych"):
         assert f"\\caption{{Test chosen: {caption}" in text
     assert text.count(r"\begin{tabular}") == text.count(r"\end{tabular}") == 8
-    for table in re.findall(r"\\begin\{tabular\}\{(\w+)\}(.*?)\\end", text, re.S):
-        rows = [row for row in table[1].splitlines() if row.endswith(r"\\")]
-        assert {row.count("&") + 1 for row in rows} == {len(table[0])}
+    tables = re.findall(r"\\begin\{tabular\}\{@\{\}(?:l|p\{[^}]*\})(r+)@\{\}\}(.*?)\\end", text, re.S)
+    assert len(tables) == 8
+    for numbers, body in tables:
+        rows = [row for row in body.splitlines() if row.endswith(r"\\")]
+        assert {row.count("&") for row in rows} == {len(numbers)}
 
 
 def test_recorded_gaze_shares_are_analysed_part_by_part(tmp_path):
