@@ -190,6 +190,7 @@ class Regression(Part):
 
     of: Name = Field(description="The factor whose levels are the cases, as actor.")
     on: dict[Name, dict[str, Number]] = Field(min_length=1, description="Predictor: {level: value}.")
+    units: dict[Name, str] = Field(default_factory=dict, description="Predictor: unit, for the figure, as height: m.")
 
 
 class RankTransform(Part):

@@ -273,7 +273,8 @@ def _regression(part: Mapping[str, Any] | None) -> RegressionPlan | None:
         str(name): {numeric_label(level): float(v) for level, v in values.items()}
         for name, values in part["on"].items()
     }
-    return RegressionPlan(str(part["of"]), on)
+    units = {str(name): str(unit) for name, unit in part.get("units", {}).items()}
+    return RegressionPlan(str(part["of"]), on, units)
 
 
 def _rank_transform(part: Mapping[str, Any] | None) -> RankTransformPlan | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 
@@ -93,10 +93,14 @@ class EquivalencePlan:
 
 @dataclass(frozen=True)
 class RegressionPlan:
-    """The mean of every level of a factor on values known of that level: predictor -> level -> value."""
+    """The mean of every level of a factor on values known of that level: predictor -> level -> value.
+
+    units: predictor -> unit, where it has one.
+    """
 
     of: str
     on: Mapping[str, Mapping[str, float]]
+    units: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

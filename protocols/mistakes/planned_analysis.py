@@ -169,6 +169,8 @@ def _equivalence_and_regression(study: Study, plan: FurtherAnalysis, at: Place) 
         return
     for name, values in on.items():
         yield from _covered(study, (*at, "regression", "on", name), values, of, f"the {name}")
+    for name in plan.regression.units.keys() - on.keys():
+        yield Mistake((*at, "regression", "units", name), no_such(name, on, "predictor"))
     cases, needed = len(study.factors[of]), len(on) + 2
     if cases < needed:
         message = f"{cases} levels of {of} are too few for {len(on)} predictors; at least {needed} are needed"

@@ -25,7 +25,7 @@ FURTHER = f"""
     - {{factor: speed, bound: 0.0003}}
     - {{factor: speed, bound: 0.0005, by: actor}}
     - {{factor: sex, bound: 0.0005}}
-  regression: {{of: actor, on: {{height: {HEIGHTS}}}}}
+  regression: {{of: actor, on: {{height: {HEIGHTS}}}, units: {{height: m}}}}
   aligned_rank_transform: {{within: [actor, speed], between: [sex]}}
   mixed_model: {{stimulus: actor, factors: [speed, sex]}}
   also:
@@ -39,7 +39,7 @@ FURTHER = f"""
       unit: ""
       heights: {HEIGHTS}
       aligned_rank_transform: {{within: [actor]}}
-  figures: [{{kind: raincloud, x: actor}}, {{kind: qq}}, {{kind: order}}]
+  figures: [{{kind: raincloud, x: actor}}, {{kind: qq}}, {{kind: order}}, {{kind: regression}}]
 """
 
 
@@ -75,6 +75,10 @@ def test_every_planned_test_has_its_table_sentences_and_section(analysed: tuple[
         assert sentences[0].replace("<", "&lt;") in page
     assert "TOST t(" in pd.read_csv(out / "equivalence.csv")["sentence"][0]
     assert page.count("<summary>Q–Q plot</summary>") == 4  # two ANOVAs, t tests, regression
+    drawn = (out / "regression.svg").read_text(encoding="utf-8")
+    assert "<!-- height (m) -->" in drawn
+    for actor in ("F1", "F2", "M1", "M2"):
+        assert f"<!-- {actor} -->" in drawn
 
 
 def test_the_tables_are_those_of_the_functions(analysed: tuple[Path, Path, AnalysisOutcome]) -> None:
@@ -173,6 +177,7 @@ WRONG = {
     "  equivalence: [{factor: speed, bound: 0}]": "it must be more than 0",
     "  equivalence: [{factor: speed, bound: 1, by: speed}]": "is the factor compared",
     "  regression: {of: actor, on: {height: {F1: 1.7}}}": "the height of F2, M1, M2 is missing",
+    "  regression: {of: actor, on: {height: {F1: 1.7}}, units: {hight: m}}": "did you mean height?",
     "  regression: {of: speed, on: {a: {'0.8': 1, '1.0': 2, '1.2': 3}, b: {'0.8': 1, '1.0': 2, '1.2': 4}}}": "too few",
     "  aligned_rank_transform: {within: [sex]}": "sex is a between factor; name it under between",
     "  aligned_rank_transform: {}": "name at least one factor",
