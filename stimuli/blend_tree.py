@@ -24,7 +24,11 @@ class CoverageError(ValueError):
 
     def __init__(self, sentence: str, drawing: str = "") -> None:
         super().__init__(f"{sentence}\n{drawing}" if drawing else sentence)
-        self.sentence = sentence
+        self.sentence, self.drawing = sentence, drawing
+
+    def of(self, name: str) -> CoverageError:
+        """The same of an actor by name, where several are asked."""
+        return CoverageError(f"{name}: {self.sentence}", self.drawing)
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,9 @@ def film(
     *,
     condition: Annotated[
         list[str] | None,
-        Parameter(consume_multiple=True, help="factor=level, as actor=F1 speed=1.0; left out: the first level."),
+        Parameter(
+            negative="", consume_multiple=True, help="factor=level, as actor=F1 speed=1.0; left out: the first level."
+        ),
     ] = None,
     seconds: Annotated[float, Parameter(help="Length of the film, s.")] = 4.0,
     rate: Annotated[str, Parameter(help="Frames per second, exactly; 60, 59.94 or 60000/1001.")] = "60",

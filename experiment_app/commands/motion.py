@@ -139,7 +139,9 @@ def check_actor(
 @actor_commands.command(name="table")
 def table(
     *,
-    actors: Annotated[list[str] | None, Parameter(help="Names; by default all default actors.")] = None,
+    actors: Annotated[
+        list[str] | None, Parameter(negative="", consume_multiple=True, help="Names; by default all default actors.")
+    ] = None,
     library: Library = None,
 ) -> int:
     """Write delivered speed per target speed over actors, mean and SD, as a Markdown table (as thesis table 3.2)."""

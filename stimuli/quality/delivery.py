@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stimuli.actors import Actor, load_actor
-from stimuli.blend_tree import Branch, coverage, followed_step_frequency
+from stimuli.blend_tree import Branch, CoverageError, coverage, followed_step_frequency
 from stimuli.gait import Gait
 from stimuli.measure import DeliveredGait, delivered_gait
 
@@ -109,13 +109,13 @@ def delivered_table(
 ) -> list[TableCell]:
     """What actors deliver at each target, as in table 3.2 of Niay (2022): step frequencies, in each all speeds.
 
-    Raises CoverageError when an actor does not cover a target.
+    Raises CoverageError, which names the actor, when one does not cover a target.
     """
     actors = [load_actor(name) for name in names]
     cells = []
     for frequency in frequencies:
         for speed in speeds:
-            measured = [delivered_gait(actor, speed, frequency) for actor in actors]
+            measured = [_delivered(actor, speed, frequency) for actor in actors]
             cells.append(
                 TableCell(
                     target=Gait.at_speed(speed, frequency),
@@ -126,6 +126,13 @@ def delivered_table(
                 )
             )
     return cells
+
+
+def _delivered(actor: Actor, speed: float, step_frequency: float) -> DeliveredGait:
+    try:
+        return delivered_gait(actor, speed, step_frequency)
+    except CoverageError as error:
+        raise error.of(actor.name) from None
 
 
 def _mean_and_deviation(values: list[float]) -> tuple[float, float]:

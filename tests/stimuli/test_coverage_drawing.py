@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from stimuli.actors import CYCLE_SPEEDS, METRONOME, load_actor, metronome_tree
 from stimuli.blend_tree import Branch, CoverageError, Leaf, blend_weights, covers, many_weights
 from stimuli.coverage_drawing import COLUMNS, ROWS, coverage_drawing
+from stimuli.quality.delivery import delivered_table
 from stimuli.walker import drawn_pose
 
 GRID = metronome_tree(METRONOME, CYCLE_SPEEDS)
@@ -67,3 +68,9 @@ def test_trees_over_other_parameters_are_told_in_words_only():
     with pytest.raises(CoverageError) as error:
         blend_weights(tree, {"sway": 3.0})
     assert "\n" not in str(error.value)
+
+
+def test_of_several_actors_the_one_that_does_not_reach_so_far_is_named():
+    with pytest.raises(CoverageError, match=r"^F1: speed 1\.6 m/s is outside the cycles there are") as error:
+        delivered_table(["F1", "M1"], speeds=(1.2, 1.6), frequencies=(100.0,))
+    assert sum(row.count("X") for row in map_of(str(error.value))) == 1
