@@ -117,6 +117,6 @@ def _channel(container: Container, raw: dict[str, Any], channel: dict[str, Any],
     expected = len(times) * (3 if interpolation == "CUBICSPLINE" else 1)
     if len(times) == 0 or len(values) != expected or values.shape[1] != (4 if path == "rotation" else 3):
         raise BodyError(f"{where}: an animation's keys and values do not match")
-    if np.any(np.diff(times) <= 0) or not np.all(np.isfinite(values)):
+    if not np.all(np.diff(times) > 0) or not np.all(np.isfinite(times)) or not np.all(np.isfinite(values)):
         raise BodyError(f"{where}: an animation's times do not grow, or its values are not finite")
     return Channel(int(node), str(path), interpolation, times, values)

@@ -15,12 +15,13 @@ from stimuli.body_files.humanoid import Humanoid, bind_matrices, understand
 from stimuli.body_files.materials import Material, read_materials
 from stimuli.body_files.meshes import Primitive
 from stimuli.body_files.notes import notes_on_document, notes_on_meshes, notes_on_skeleton
-from stimuli.body_files.scene import GltfScene, placed_vertices, read_scene
+from stimuli.body_files.placing import Placed, blended_matrices, moved, placed_vertices
+from stimuli.body_files.scene import GltfScene, read_scene
+from stimuli.body_files.surfaces import MOST_MATERIALS, merged, surface_of
 from stimuli.body_files.weights import four_largest, per_role, with_stiff_soles
 from stimuli.skeleton import PARENTS, Floats, Skeleton
 
 WITH_WEIGHTS = "export it with its armature and skin weights"
-MOST_MATERIALS = 24  # as the renderer's shaders have room for
 COARSER = re.compile(r"(?i)(^|[_ .-])lod[_ ]?[1-9]")
 """In the names of nodes that show the same body again with fewer triangles."""
 
@@ -64,20 +65,20 @@ def _person(container: Container, path: Path) -> tuple[Body, Explained]:
         raise BodyError(f"{path.name}: its meshes say not which joints move them (JOINTS_0, WEIGHTS_0); {WITH_WEIGHTS}")
     binds = bind_matrices(scene, skin, path.name)
     bound = [_bound(scene, node, primitive, binds, path.name) for node, primitive in worn]
-    everything = np.concatenate([points for _, points, _ in bound])
+    everything = np.concatenate([placed.points for _, placed in bound])
     person = understand(container, scene, skin, everything, path.name)
     material = read_materials(container, path)
     surfaces = tuple(
-        _surface(material(primitive.material), person, node, _seen_outside(primitive, mirrored), carried, points)
-        for (node, primitive), (carried, points, mirrored) in zip(worn, bound, strict=True)
-        if len(primitive.triangles)
+        _surface(material(placed.primitive.material), person, carried, placed)
+        for carried, placed in bound
+        if len(placed.primitive.triangles)
     )
     if not surfaces:
         raise BodyError(f"{path.name}: its skinned meshes have no triangles")
     offsets = person.positions - np.array([person.positions[p] if p >= 0 else np.zeros(3) for p in PARENTS])
     stature = max(float(s.positions[:, 1].max()) for s in surfaces)
     if len(surfaces) > MOST_MATERIALS:
-        surfaces = _merged(surfaces)
+        surfaces = merged(surfaces)
     if len(surfaces) > MOST_MATERIALS:
         raise BodyError(f"{path.name}: it has {len(surfaces)} materials, more than {MOST_MATERIALS}; join some first")
     props = sum(node.mesh is not None and node.skin is None for node in scene.nodes)
@@ -144,102 +145,21 @@ def _of_one_skeleton(scene: GltfScene, skin: int, other: int) -> bool:
     return hangs_on(first, second) or hangs_on(second, first)
 
 
-def _bound(
-    scene: GltfScene, node: int, primitive: Primitive, binds: Floats, where: str
-) -> tuple[Integers, Floats, bool]:
-    """Node indices (V, K) that carry each vertex, the vertices (V, 3) in the bind pose, in scene space, and whether
-    they are mirrored on their way there."""
+def _bound(scene: GltfScene, node: int, primitive: Primitive, binds: Floats, where: str) -> tuple[Integers, Placed]:
+    """Node indices (V, K) that carry each vertex of a primitive, and the primitive in the bind pose, in scene space."""
     own = scene.skins[scene.nodes[node].skin or 0]
     assert primitive.joints is not None
-    assert primitive.weights is not None
     if int(primitive.joints.max(initial=0)) >= len(own.joints):
         raise BodyError(f"{where}: a mesh hangs on joints its skin does not have")
-    matrices = binds[own.joints] @ own.inverse_binds
-    points = np.column_stack([primitive.positions, np.ones(len(primitive.positions))])
-    blended = np.einsum("vk,vkij->vij", primitive.weights, matrices[primitive.joints])
-    placed = np.einsum("vij,vj->vi", blended, points)[:, :3]
-    mirrored = bool(len(blended) and np.median(np.linalg.det(blended[:, :3, :3])) < 0)
-    return own.joints[primitive.joints], placed, mirrored
+    blended = blended_matrices(primitive, binds[own.joints] @ own.inverse_binds)
+    return own.joints[primitive.joints], moved(node, primitive, blended)
 
 
-def _seen_outside(primitive: Primitive, mirrored: bool) -> Primitive:
-    """The primitive with its triangles turned over if it is mirrored, or its inside would be seen."""
-    return replace(primitive, triangles=primitive.triangles[:, ::-1]) if mirrored else primitive
-
-
-def _surface(
-    material: Material, person: Humanoid, node: int, primitive: Primitive, carried: Integers, points: Floats
-) -> Surface:
-    positions = points @ person.to_person[:, :3].T + person.to_person[:, 3]
-    assert primitive.weights is not None
-    dense = per_role(person.places[carried], primitive.weights)
+def _surface(material: Material, person: Humanoid, carried: Integers, placed: Placed) -> Surface:
+    turn = person.to_person[:, :3]
+    positions = placed.points @ turn.T + person.to_person[:, 3]
+    normals = None if placed.normals is None else placed.normals @ turn.T
+    assert placed.primitive.weights is not None
+    dense = per_role(person.places[carried], placed.primitive.weights)
     joints, weights = four_largest(with_stiff_soles(dense, positions, person.positions))
-    places = None
-    picture = material.picture
-    if picture is not None and material.texture_set < len(primitive.texture_places):
-        stored = primitive.texture_places[material.texture_set]
-        places = stored @ material.to_picture[:, :2].T + material.to_picture[:, 2]
-    return Surface(
-        name=material.name or f"mesh {node}",
-        colour=material.colour[:3],
-        roughness=material.roughness,
-        positions=positions,
-        normals=_normals(positions, primitive.triangles),
-        occlusion=np.ones(len(positions)),
-        joints=joints,
-        weights=weights,
-        triangles=primitive.triangles,
-        picture=picture if places is not None else None,
-        picture_at=places,
-        alpha=material.alpha,
-        alpha_cutoff=material.alpha_cutoff,
-        alpha_factor=float(material.colour[3]),
-        double_sided=material.double_sided,
-    )
-
-
-def _merged(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
-    """Surfaces of the same look joined into one, in the order of their first."""
-    groups: dict[tuple[object, ...], list[Surface]] = {}
-    for s in surfaces:
-        key = (
-            s.name,
-            *s.colour.tolist(),
-            s.roughness,
-            id(s.picture),
-            s.alpha,
-            s.alpha_cutoff,
-            s.alpha_factor,
-            s.double_sided,
-        )
-        groups.setdefault(key, []).append(s)
-    return tuple(_joined(group) for group in groups.values())
-
-
-def _joined(group: list[Surface]) -> Surface:
-    if len(group) == 1:
-        return group[0]
-    starts = np.cumsum([0, *(len(s.positions) for s in group[:-1])])
-    places = [s.picture_at for s in group if s.picture_at is not None]
-    return replace(
-        group[0],
-        positions=np.concatenate([s.positions for s in group]),
-        normals=np.concatenate([s.normals for s in group]),
-        occlusion=np.concatenate([s.occlusion for s in group]),
-        joints=np.concatenate([s.joints for s in group]),
-        weights=np.concatenate([s.weights for s in group]),
-        triangles=np.concatenate([s.triangles + start for s, start in zip(group, starts, strict=True)]),
-        picture_at=np.concatenate(places) if places else None,
-    )
-
-
-def _normals(positions: Floats, triangles: Integers) -> Floats:
-    """(V, 3) area-weighted means of the faces round each vertex, vertices at the same place taken together."""
-    a, b, c = (positions[triangles[:, i]] for i in range(3))
-    faces = np.cross(b - a, c - a)
-    _, group = np.unique(np.round(positions, 5), axis=0, return_inverse=True)
-    total = np.zeros((int(group.max()) + 1, 3))
-    for corner in range(3):
-        np.add.at(total, group.ravel()[triangles[:, corner]], faces)
-    normals = total[group.ravel()]
-    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    return surface_of(material, replace(placed, points=positions, normals=normals), joints, weights)

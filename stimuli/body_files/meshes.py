@@ -21,12 +21,21 @@ TRIANGULAR = LIST, STRIP, FAN = 4, 5, 6
 """Modes of primitives that are drawn; the others are points and lines."""
 
 
+SHORTEST_NORMAL = 0.1
+"""Length below which a stored normal, which should be 1 long, says nothing."""
+
+
 @dataclass(frozen=True, eq=False)
 class Primitive:
-    """Vertices of one material: positions (V, 3) as stored, the mesh it belongs to, and, when it is skinned,
-    joints (V, K) as places in the skin's list and weights (V, K) summing to 1; triangles (T, 3); texture_places
-    (V, 2) per set of coordinates, an empty tuple without; weightless: how many vertices had no weight of their own;
-    coloured: whether the file paints its vertices other than white."""
+    """Vertices of one material, as a file stores them.
+
+    mesh:           the mesh it belongs to; material: its number, None without.
+    positions:      (V, 3); triangles: (T, 3).
+    joints:         (V, K) places in the skin's list, weights: (V, K) summing to 1; both None when nothing skins it.
+    texture_places: (V, 2) per set of coordinates, empty without; normals: (V, 3) of any length, None without.
+    weightless:     how many vertices had no weight of their own.
+    coloured:       whether the file paints its vertices other than white.
+    """
 
     mesh: int
     material: int | None
@@ -35,6 +44,7 @@ class Primitive:
     weights: Floats | None
     triangles: Integers
     texture_places: tuple[Floats, ...] = ()
+    normals: Floats | None = None
     weightless: int = 0
     coloured: bool = False
 
@@ -54,6 +64,7 @@ def read_primitive(container: Container, mesh: int, primitive: dict[str, Any], w
         weights=weights,
         triangles=_triangles(container, primitive, len(positions), where),
         texture_places=_texture_places(container, attributes, len(positions), where),
+        normals=_normals(container, attributes, len(positions), where),
         weightless=weightless,
         coloured=_painted(container, attributes, where),
     )
@@ -90,6 +101,17 @@ def _texture_places(container: Container, attributes: dict[str, Any], count: int
             raise BodyError(f"{where}: texture coordinates of a mesh do not match its vertices")
         found.append(values)
     return tuple(found)
+
+
+def _normals(container: Container, attributes: dict[str, Any], count: int, where: str) -> Floats | None:
+    """(V, 3) the file's own normals, where it has usable ones."""
+    if "NORMAL" not in attributes:
+        return None
+    values = read_accessor(container, attributes["NORMAL"], where).astype(np.float64)
+    if values.shape != (count, 3):
+        raise BodyError(f"{where}: normals of a mesh do not match its vertices")
+    usable = np.all(np.isfinite(values)) and np.all(np.linalg.norm(values, axis=1) > SHORTEST_NORMAL)
+    return values if usable else None
 
 
 def _painted(container: Container, attributes: dict[str, Any], where: str) -> bool:

@@ -1,8 +1,4 @@
-"""Any glTF 2.0 scene as arrays: nodes, skins, its meshes (meshes.py), and where the vertices are. Knows no people.
-
-Vertices follow glTF 2.0 section 3.7.3: a skinned mesh ignores its node's own transform; joints take the place
-`world of the joint x inverse bind matrix`.
-"""
+"""Any glTF 2.0 scene as arrays: nodes, skins and its meshes (meshes.py). Knows no people."""
 
 from __future__ import annotations
 
@@ -134,25 +130,6 @@ def world_matrices(nodes: tuple[Node, ...]) -> Floats:
         return found[index]
 
     return np.array([world(i) for i in range(len(nodes))]).reshape(-1, 4, 4)
-
-
-def placed_vertices(scene: GltfScene) -> Floats:
-    """(V, 3) all vertices of all meshes where the scene shows them, in metres as the file says."""
-    world = world_matrices(scene.nodes)
-    parts: list[Floats] = []
-    for index, node in enumerate(scene.nodes):
-        for primitive in scene.primitives:
-            if primitive.mesh != node.mesh:
-                continue
-            points = np.column_stack([primitive.positions, np.ones(len(primitive.positions))])
-            if node.skin is not None and primitive.joints is not None and primitive.weights is not None:
-                skin = scene.skins[node.skin]
-                matrices = world[skin.joints] @ skin.inverse_binds
-                blended = np.einsum("vk,vkij->vij", primitive.weights, matrices[primitive.joints])
-                parts.append(np.einsum("vij,vj->vi", blended, points)[:, :3])
-            else:
-                parts.append((points @ world[index].T)[:, :3])
-    return np.concatenate(parts) if parts else np.zeros((0, 3))
 
 
 def _nodes(document: dict[str, Any], where: str) -> tuple[Node, ...]:

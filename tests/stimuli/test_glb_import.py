@@ -16,7 +16,8 @@ from stimuli.body_files.animation import Channel, moved_nodes, read_animations, 
 from stimuli.body_files.container import Container, open_container, read_container, write_container
 from stimuli.body_files.errors import BodyError
 from stimuli.body_files.imported import bounding_box, import_and_explain, import_body
-from stimuli.body_files.scene import placed_vertices, read_scene
+from stimuli.body_files.placing import placed_vertices
+from stimuli.body_files.scene import read_scene
 from stimuli.skeleton import JOINTS
 
 MAN = files("stimuli").joinpath("data", "bodies", "man.glb").read_bytes()
