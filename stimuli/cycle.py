@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stimuli.clip import Clip, FootEvent, world_pose
-from stimuli.events import GaitError, GaitMeasures, find_events, foot_paths, measure_paths
+from stimuli.events import GaitError, find_events, foot_paths
 from stimuli.gait import Gait
+from stimuli.gait_measures import GaitMeasures, measure_paths
 from stimuli.motion_files.rest_pose import RestPose, rest_pose
 from stimuli.rotations import (
     about_axis,

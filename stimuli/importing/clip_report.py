@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from stimuli.clip import Clip, FootEvent, world_positions
-from stimuli.events import GaitError, GaitMeasures, events_of, foot_paths, measure_paths
+from stimuli.events import GaitError, events_of, foot_paths
+from stimuli.gait_measures import GaitMeasures, measure_paths
 from stimuli.motion_files.axes import leg_length
 from stimuli.motion_files.reading import read_clip
 
@@ -98,7 +99,7 @@ def _measured(clip: Clip) -> tuple[tuple[FootEvent, ...], GaitMeasures | None, l
     except GaitError as error:
         return events, None, [*warnings, str(error)]
     if not measures.steady and measures.steps_used > 2:
-        warnings.append("no two strides are alike: the walk only sets off and stops, so its measures mean little")
+        warnings.append("no two strides are alike, so that the measures are those of one foot's and mean little")
     elif not measures.steady:
         warnings.append("only one stride could be used, so the step frequency is good to about 2 per cent")
     if measures.on_the_spot:

@@ -10,8 +10,9 @@ import numpy as np
 
 from stimuli.clip import Clip, world_positions
 from stimuli.cycle import Cycle, cycle_and_measures, leg_length, seam_gaps
-from stimuli.events import GaitError, GaitMeasures, foot_paths
+from stimuli.events import GaitError, foot_paths
 from stimuli.gait import Gait
+from stimuli.gait_measures import GaitMeasures
 from stimuli.gait_model import WalkCurves
 from stimuli.importing.errors import ImportingError
 from stimuli.importing.signals import walk_signals

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stimuli.clip import FootEvent, Source, Subject
-from stimuli.events import SIDES, FootPaths, GaitError, GaitMeasures, find_events, measure_paths
+from stimuli.events import SIDES, FootPaths, GaitError, find_events
+from stimuli.gait_measures import GaitMeasures, measure_paths
 
 Floats = NDArray[np.floating]
 
@@ -68,6 +69,7 @@ def marker_foot_paths(recording: MarkerRecording) -> FootPaths:
         heels=np.stack([paths[heel] for heel, _ in feet]),
         toes=np.stack([paths[toe] for _, toe in feet]),
         rate=recording.rate,
+        heel_markers=all(heel.endswith("heel") for heel, _ in feet),
     )
 
 

@@ -13,7 +13,7 @@ pytest.importorskip("ezc3d", reason="ezc3d is not installed (extra mocap)")
 
 from stimuli.clip import world_positions
 from stimuli.cycle import extract_cycle, seam_gaps
-from stimuli.events import measure
+from stimuli.gait_measures import measure
 from stimuli.motion_files.axes import to_y_up
 from stimuli.motion_files.c3d import read_c3d
 from stimuli.motion_files.errors import MotionFileError

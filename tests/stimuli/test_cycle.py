@@ -7,7 +7,8 @@ import pytest
 
 from stimuli.clip import world_positions
 from stimuli.cycle import close_curve, close_rotations, cycle_positions, extract_cycle, seam_gaps
-from stimuli.events import GaitError, find_events, foot_paths, measure
+from stimuli.events import GaitError, find_events, foot_paths
+from stimuli.gait_measures import measure
 from stimuli.motion_files.bvh import read_bvh
 from stimuli.rotations import angle_between, from_exponential
 from stimuli.skeleton import JOINTS
