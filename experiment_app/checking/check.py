@@ -10,6 +10,7 @@ from pathlib import Path
 
 from experiment_app.checking.balance import balance, likely_seed, order_in_words
 from experiment_app.checking.coverage import coverage_mistakes
+from experiment_app.checking.slides import sliding_bodies
 from protocols.mistakes.consistency import inconsistencies, referred_factors, settings_of
 from protocols.mistakes.mistake import Mistake, Place
 from protocols.mistakes.placeholders import unknown_placeholders
@@ -121,8 +122,8 @@ def _most(study: Study) -> str:
     return "at most " if isinstance(study.order, AdaptiveOrder) and study.order.stops_after is not None else ""
 
 
-def text_notes(file: StudyFile) -> list[str]:
-    """Sentences about texts that would not be shown as they should be; empty when all are well."""
+def notes_on(file: StudyFile) -> list[str]:
+    """Sentences about what would not be shown as it should be; empty when all is well."""
     from experiment_app.render.fonts import can_shape, missing_glyphs, needs_shaping
 
     study = file.study
@@ -133,6 +134,7 @@ def text_notes(file: StudyFile) -> list[str]:
         *_wrong_arrows(study),
         *_small_pages(study),
         *_untrue_perspective(study),
+        *sliding_bodies(study),
     ]
     if not study.language.startswith("en") and study.words == Words():
         notes.append(f"language is {study.language}, but the buttons and hints are English; translate them in words.")

@@ -44,6 +44,16 @@ def coverage_mistakes(study: Study) -> Iterator[Mistake]:
                 yield Mistake(place, f"actor {walk.actor}: {known[walk]}")
 
 
+def walks_of(study: Study) -> Iterator[Walk]:
+    """Every walk at the ends of what a trial can show, once; crowds left out."""
+    known: set[Walk] = set()
+    for shown in _shown(study):
+        for walk in study.task.extremes(study.stimulus, shown.levels):
+            if walk.crowd is None and walk not in known:
+                known.add(walk)
+                yield walk
+
+
 def _why_not(walk: Walk) -> str:
     """Why a walk cannot be, as a sentence; "" when it can."""
     from experiment_app.walkers import own_step_frequency

@@ -58,14 +58,14 @@ def check(
 ) -> int:
     """Check a study file: every mistake with its line, the number of trials, how long it takes, the balance."""
     from experiment_app.checking.balance import what_participant_sees
-    from experiment_app.checking.check import checked_study, design_picture, summary, text_notes
+    from experiment_app.checking.check import checked_study, design_picture, notes_on, summary
 
     if picture is not None and picture.suffix.lower() != ".png":
         raise UsageError(f"--picture {picture}: the picture is a PNG; let its name end in .png, as balance.png.")
     if participant_number is not None and participant_number < 1:
         raise UsageError(f"--participant-number {participant_number}: numbers of arrival begin at 1.")
     file = checked_study(study)
-    for note in text_notes(file):
+    for note in notes_on(file):
         problems.print(f"Note: {note}", style="yellow", markup=False)
     for line in summary(file):
         out.print(line, markup=False)

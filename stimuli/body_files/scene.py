@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -63,13 +63,13 @@ class GltfScene:
 
 
 def read_scene(container: Container, where: str) -> GltfScene:
-    """All nodes, skins and triangle meshes of a file, or a sentence saying why it can't be shown."""
+    """All nodes, skins and triangle meshes of a file's own scene, or a sentence saying why it can't be shown."""
     document = container.document
     strange = sorted(set(map(str, document.get("extensionsRequired", []))) - UNDERSTOOD)
     if strange:
         raise BodyError(f"{where}: it needs {', '.join(strange)}, which gaitlab can't read; re-export without it")
     try:
-        nodes = _nodes(document, where)
+        nodes = _only_shown(document, _nodes(document, where), where)
         skins = tuple(_skin(container, skin, len(nodes), where) for skin in document.get("skins", []))
         primitives = tuple(
             read_primitive(container, m, primitive, where)
@@ -165,6 +165,23 @@ def _nodes(document: dict[str, Any], where: str) -> tuple[Node, ...]:
         if node.skin is not None:
             item(Container(document, ()), "skins", node.skin, where)
     return tuple(found)
+
+
+def _only_shown(document: dict[str, Any], nodes: tuple[Node, ...], where: str) -> tuple[Node, ...]:
+    """The nodes, without their meshes those outside the scene that the file shows; without scenes it shows all."""
+    if not document.get("scenes"):
+        return nodes
+    scene = item(Container(document, ()), "scenes", document.get("scene", 0), where)
+    roots = set(scene.get("nodes", ()))
+
+    def is_shown(index: int) -> bool:
+        while index >= 0:
+            if index in roots:
+                return True
+            index = nodes[index].parent
+        return False
+
+    return tuple(node if is_shown(i) else replace(node, mesh=None) for i, node in enumerate(nodes))
 
 
 def _numbers(values: Any, count: int, where: str) -> Floats:

@@ -17,6 +17,7 @@ from experiment_app.render.renderer import Renderer
 from experiment_app.windows.offscreen import offscreen_context
 from stimuli.body_files.container import read_container, write_container
 from stimuli.body_files.shown import fitted, looked_at, read_shown
+from tests.protocols.studies import changed
 
 MAN = files("stimuli").joinpath("data", "bodies", "man.glb").read_bytes()
 MODELS = Path(__file__).parents[2].parent / "shared" / "gltf"
@@ -145,3 +146,16 @@ def test_a_file_of_which_nothing_can_be_seen_is_refused_without_a_picture(capfd)
     assert words == ""
     assert "cut short" in refusal
     assert not Path("cut-check.png").exists()
+
+
+@shared
+def test_a_study_is_told_when_the_legs_of_its_body_are_too_short_for_its_steps(capfd):
+    """F2's longest steps at 1.2 m/s and 80 steps/min are 0.9 m, three times the knight's legs."""
+    assert run(["body", "import", str(MODELS / "KayKit_Knight.glb"), "--name", "knight"]) == 0
+    assert run(["body", "import", str(MODELS / "CesiumMan.glb"), "--name", "cesium"]) == 0
+    for body, told in (("knight", True), ("cesium", False)):
+        study = changed(("  speed: $speed\n", f"  speed: $speed\n  body: {body}\n"))
+        Path("mine.yaml").write_text(study, encoding="utf-8")
+        assert run(["check", "mine.yaml"]) == 0
+        words = " ".join(said(capfd)[1].split())
+        assert ("actor F2, 1.2 m/s, 80 steps/min): its legs are too short for these steps" in words) == told

@@ -302,6 +302,7 @@ def test_of_two_people_in_a_file_one_walks_and_the_other_is_left_out_with_a_sent
             if "skin" in node:
                 node["skin"] = 1
         document["nodes"] += second
+        document["scenes"][0]["nodes"] += [root + count for root in document["scenes"][0]["nodes"]]
         document["skins"].append(
             {**document["skins"][0], "joints": [j + count for j in document["skins"][0]["joints"]]}
         )

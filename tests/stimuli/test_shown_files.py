@@ -98,6 +98,14 @@ def test_normals_stay_upright_on_a_mesh_that_is_stretched(tmp_path):
     assert np.allclose(surface.normals, np.array([0.0, 1.0, 3.0]) / np.sqrt(10.0), atol=1e-6)
 
 
+@pytest.mark.parametrize(("scene", "seen"), [(None, 1), (0, 1), (1, 2)])
+def test_only_the_scene_that_a_file_shows_is_shown(tmp_path, scene, seen):
+    changes = {"scenes": [{"nodes": [0]}, {"nodes": [0, 1]}, {}]} | ({} if scene is None else {"scene": scene})
+    nodes = [{"mesh": 0}, {"children": [2]}, {"mesh": 0}]
+    surfaces = fitted(shown_of(tmp_path, square(nodes=nodes, **changes))).body.levels[0]
+    assert sum(len(s.triangles) for s in surfaces) == 2 * seen
+
+
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 500.0])
 def test_a_model_of_any_unit_stands_in_the_picture(tmp_path, scale):
     model = fitted(shown_of(tmp_path, square(nodes=[{"mesh": 0, "scale": [scale] * 3, "translation": [9, 9, 9]}])))
