@@ -21,7 +21,11 @@ Floats = NDArray[np.floating]
 
 SIDES = ("left", "right")
 CUTOFF = 12.0  # Hz; below the noise of skeletons fitted to markers, above the swing of a foot
-LANDING_CUTOFF = 50.0  # Hz, of pitch where the foot carries markers; smoothed more, a landing seems earlier than it was
+LANDING_CUTOFFS = (
+    50.0,
+    20.0,
+)  # Hz, of the pitch of a marked foot, quiet and noisy; more smoothed, it seems to land early
+NOISY = 0.0015  # rad, standard deviation of a foot's pitch; 0.2 mm of noise in each marker
 OFF_DELAY = 0.005  # s, median of toe-off minus furthest back
 LEAST_REACH = 0.12  # m peak to peak, foot against pelvis, of the smallest step taken for walking
 GOING = 0.25  # m/s: at twice that the pelvis' way alone tells the direction of walking, below it its facing
@@ -118,12 +122,31 @@ def events_of(clip: Clip) -> tuple[FootEvent, ...]:
 
 
 def _motion(paths: FootPaths, foot: int) -> FootMotion:
-    cutoff = LANDING_CUTOFF if paths.heel_markers else CUTOFF
-    sole = low_pass(paths.toes[foot] - paths.heels[foot], cutoff, paths.rate)
-    pitch = np.unwrap(np.arctan2(sole[:, 1], np.sum(sole[:, [0, 2]] * paths.heading, axis=1)))
+    sole = paths.toes[foot] - paths.heels[foot]
+    if not paths.heel_markers:
+        return FootMotion(paths.reach(foot), _pitching_down(paths, sole, CUTOFF), None)
+    quiet, noisy = LANDING_CUTOFFS
+    cutoff = noisy if _noise(_pitch(paths, sole)) > NOISY else quiet
     height = low_pass(paths.heels[foot][:, 1], CUTOFF, paths.rate)
-    lift = np.gradient(np.gradient(height)) * paths.rate**2 if paths.heel_markers else None
-    return FootMotion(paths.reach(foot), -np.gradient(pitch) * paths.rate, lift)
+    lift = np.gradient(np.gradient(height)) * paths.rate**2
+    return FootMotion(paths.reach(foot), _pitching_down(paths, sole, cutoff), lift)
+
+
+def _pitch(paths: FootPaths, sole: Floats) -> Floats:
+    """(T,) rad: angle of the toes above the heel, from (T, 3) heel to toes."""
+    return np.unwrap(np.arctan2(sole[:, 1], np.sum(sole[:, [0, 2]] * paths.heading, axis=1)))
+
+
+def _pitching_down(paths: FootPaths, sole: Floats, cutoff: float) -> Floats:
+    return -np.gradient(_pitch(paths, low_pass(sole, cutoff, paths.rate))) * paths.rate
+
+
+def _noise(curve: Floats) -> float:
+    """Standard deviation of white noise on a smooth curve, from the median of its third differences.
+
+    A third difference has 1 + 9 + 9 + 1 times the variance; a normal variable's median distance is 0.6745 of its SD.
+    """
+    return float(np.median(np.abs(np.diff(curve, 3))) / 0.6745 / 20**0.5)
 
 
 def _offs(paths: FootPaths, foot: int) -> list[float]:

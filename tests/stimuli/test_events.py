@@ -2,6 +2,7 @@
 
 import csv
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -51,14 +52,23 @@ def test_half_of_the_walks_are_within_0_7_percent_of_the_manifest():
     assert step_frequency <= 0.007
 
 
-def matched(kind, folder="c3d"):
-    """Seconds by which found events differ from the nearest of their kind in the file, and how many were not found."""
+@cache
+def labelled():
+    """The recordings that hold events, and the paths of their feet."""
+    recordings = [read_c3d(MOCAP / row["file"]) for row in manifest("c3d")]
+    return [(recording, marker_foot_paths(recording)) for recording in recordings if recording.events]
+
+
+def matched(kind, noise=0.0):
+    """Seconds by which found events differ from the nearest of their kind in the file, and how many were not found.
+
+    noise: m, standard deviation of what is added to the markers of the feet
+    """
     differences, missed = [], 0
-    for row in manifest(folder):
-        recording = read_c3d(MOCAP / row["file"])
-        if not recording.events:
-            continue
-        found = find_events(marker_foot_paths(recording))
+    random = np.random.default_rng(1)
+    for recording, paths in labelled():
+        heels, toes = (points + random.normal(0.0, noise, points.shape) for points in (paths.heels, paths.toes))
+        found = find_events(replace(paths, heels=heels, toes=toes))
         for event in (e for e in recording.events if e.kind == kind):
             near = [f.time - event.time for f in found if f.side == event.side and f.kind == kind]
             near = [difference for difference in near if abs(difference) < 0.15]
@@ -83,29 +93,36 @@ def test_heel_strikes_are_within_20_ms_of_the_files_events():
 
 
 @needs_captures
-def test_heel_strikes_are_within_20_ms_of_force_plates():
-    """Schreiber & Moissenet's walkers step on two plates, and no file has a strike before the first of them."""
-    differences = []
-    for row in manifest("c3d/schreiber"):
-        recording = read_c3d(MOCAP / row["file"])
-        found = [event for event in find_events(marker_foot_paths(recording)) if event.kind == "strike"]
-        on_plates = [event for event in recording.events if event.kind == "strike"][:2]
-        assert [event.side for event in found[:2]] == [event.side for event in on_plates]
-        differences += [ours.time - plate.time for ours, plate in zip(found, on_plates, strict=False)]
-    assert len(differences) == 56
-    assert abs(np.median(differences)) < 0.003
-    assert np.max(np.abs(differences)) < 0.020
+@pytest.mark.parametrize(("noise", "beyond"), [(0.0003, 5), (0.0005, 6), (0.001, 9)])
+def test_noisy_markers_move_few_strikes_beyond_20_ms(noise, beyond):
+    """Optical systems have 0.1 to 0.5 mm; pitch smoothed as little as without noise would leave 10 and 18 of 149."""
+    differences, missed = matched("strike", noise)
+    assert missed == 0
+    assert np.mean(np.abs(differences)) < 0.008
+    assert np.sum(np.abs(differences) > 0.020) <= beyond
+
+
+def schreiber_strikes():
+    """The heel strikes found in each of Schreiber & Moissenet's files, and those in the file."""
+    recordings = [(recording, paths) for recording, paths in labelled() if recording.name.startswith("20")]
+    both = [(find_events(paths), recording.events) for recording, paths in recordings]
+    return [[[e for e in events if e.kind == "strike"] for events in pair] for pair in both]
 
 
 @needs_captures
 def test_no_strike_is_found_where_the_files_have_none():
-    for row in manifest("c3d/schreiber"):
-        recording = read_c3d(MOCAP / row["file"])
-        sides = [
-            [event.side for event in events if event.kind == "strike"]
-            for events in (find_events(marker_foot_paths(recording)), recording.events)
-        ]
-        assert sides[0] == sides[1]
+    for found, given in schreiber_strikes():
+        assert [event.side for event in found] == [event.side for event in given]
+
+
+@needs_captures
+def test_heel_strikes_are_within_20_ms_of_force_plates():
+    """Schreiber & Moissenet's walkers step on two plates, with the first two strikes of each file."""
+    pairs = [pair for found, given in schreiber_strikes() for pair in zip(found[:2], given[:2], strict=True)]
+    differences = [ours.time - plate.time for ours, plate in pairs]
+    assert len(differences) == 56
+    assert abs(np.median(differences)) < 0.003
+    assert np.max(np.abs(differences)) < 0.020
 
 
 @needs_captures
