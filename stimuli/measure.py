@@ -117,7 +117,7 @@ def _strike(lowest: Floats, times: Floats, period: float) -> float:
 def _step_length(soles: Floats, lowest: Floats, times: Floats, strike: float, side: int, sole: Sole) -> float:
     """m: the striking foot's heel ahead of where the standing foot's heel stood, both on the ground just after.
 
-    Where the standing foot has left its heel, its toes tell where that was.
+    Where the standing foot has left its heel, its toes tell where that was, or all of a foot without any that bend.
     """
     frame = int(np.ceil(strike / times[1] + 0.02 * len(times))) % len(times)
     standing = soles[frame, 1 - side]
@@ -125,7 +125,7 @@ def _step_length(soles: Floats, lowest: Floats, times: Floats, strike: float, si
         raise ValueError("one foot leaves the ground before the other strikes")
     heel = standing[0]
     if heel[1] > TOUCHING:
-        along = (standing[2] - standing[1]) * (1.0, 0.0, 1.0)
+        along = (standing[2] - standing[1 if sole.tip > sole.ball else 0]) * (1.0, 0.0, 1.0)
         heel = standing[2] - (sole.tip + sole.heel) * along / np.linalg.norm(along)
     return float(soles[frame, side, 0, 2] - heel[2])
 

@@ -20,7 +20,7 @@ from stimuli.bodies.skinning import skin
 from stimuli.legs.contact import Sole
 from stimuli.measure import delivered_gait
 from stimuli.retarget import Figure
-from stimuli.skeleton import JOINTS, Floats
+from stimuli.skeleton import JOINTS, Floats, Skeleton
 from stimuli.walker import drawn_pose, skin_matrices, standing
 
 SLIDES = 5.0
@@ -30,7 +30,12 @@ ROLLS = np.radians(np.linspace(4.0, 32.0, 15))
 """Pitches of a foot from heel strike until it stands flat (20 to 30 degrees and less, Winter 1991), and of toes as they
 leave the ground."""
 
+STIFF_ROLLS = np.radians(np.linspace(4.0, 64.0, 31))
+"""Pitches, heel up, of a foot without toes that bend, which rolls over its tip as far as a heel rises."""
+
 PIVOTS_TRIED = 201
+
+_TOES = [JOINTS.index("leftToes"), JOINTS.index("rightToes")]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +51,12 @@ class FittedFigure(Figure):
 
 def on_its_own_soles(actor: Actor, body: Body) -> Actor:
     """The actor walking on the soles of the body it wears, which is already at the actor's height."""
-    return replace(actor, figure=FittedFigure(actor.figure.skeleton, sole_of(body)))
+    sole, skeleton = sole_of(body), actor.figure.skeleton
+    if len(_carried(body, "rightToes")) == 0:  # the joint of toes that move nothing is where such a foot rolls
+        offsets = np.array(skeleton.offsets)
+        offsets[_TOES, 1], offsets[_TOES, 2] = sole.ball_height - sole.ankle_height, sole.ball
+        skeleton = Skeleton(offsets)
+    return replace(actor, figure=FittedFigure(skeleton, sole))
 
 
 def sole_of(body: Body) -> Sole:
@@ -69,7 +79,7 @@ def sole_of(body: Body) -> Sole:
         ahead = _pivot(toes - joint, ball_height, -ROLLS)
         if ahead > 0.0:
             return Sole(height, heel, ball, ball_height, ball + ahead)
-    tip = max(_pivot(everything - ankle, height, -ROLLS), 0.02)
+    tip = max(_pivot(everything - ankle, height, -STIFF_ROLLS), 0.02)
     return Sole(height, heel, tip, 0.0, tip)
 
 

@@ -1,6 +1,7 @@
 """Imported bodies: the library, pictures and alpha of materials, and soles that stay on the ground."""
 
 import json
+from functools import cache
 from importlib.resources import files
 from io import BytesIO
 from pathlib import Path
@@ -17,6 +18,7 @@ from stimuli.body_files.container import Container, open_container, read_contain
 from stimuli.body_files.errors import BodyError
 from stimuli.body_files.imported import import_and_explain, import_body
 from stimuli.body_files.packing import packed
+from stimuli.measure import delivered_gait
 from tests.stimuli.short_legs import short_legged
 
 MAN = files("stimuli").joinpath("data", "bodies", "man.glb").read_bytes()
@@ -123,6 +125,12 @@ GAITS = ((0.7, 80.0), (0.7, 120.0), (1.06, 100.0), (1.42, 80.0), (1.42, 120.0), 
 """Corners, middle and a long slow step of what actors walk (speed in m/s, step frequency in steps/min); comfort."""
 
 
+@cache
+def imported(model: str):
+    """A test model's body, read once."""
+    return import_body(MODELS / model)
+
+
 def worst_gaps(actor, body) -> tuple[float, float]:
     """mm: how deep a sole of the body sinks and how high one stands over all GAITS, at 24 phases."""
     found = [sole_gaps(actor, body, gait, phases=24) for gait in GAITS]
@@ -134,7 +142,7 @@ def worst_gaps(actor, body) -> tuple[float, float]:
 def test_imported_soles_stay_within_five_millimetres_of_the_ground(model, name):
     if not (MODELS / model).exists():
         pytest.skip("the Khronos sample models are not here")
-    body = import_body(MODELS / model)
+    body = imported(model)
     actor = load_actor(name, body)
     grown = scaled(body, actor.height)
     lowest, highest = worst_gaps(on_its_own_soles(actor, grown), grown)
@@ -151,6 +159,26 @@ def test_legs_much_too_short_for_the_step_keep_their_soles_on_the_ground(name):
     assert -5.0 < lowest <= highest < 5.0
     made, asked = longest_step(actor)
     assert 0.7 < made < asked
+
+
+@pytest.mark.parametrize("name", ["F2", "M1", "M3"])
+def test_a_foot_without_toes_rolls_over_its_tip_and_delivers_what_is_asked(tmp_path, name):
+    """VRM asks for no toes, and many rigs have none."""
+    container = read_container(MAN, "man")
+    for node in container.document["nodes"]:
+        node["name"] = node.get("name", "").replace("Toes", "-")
+    (tmp_path / "a.glb").write_bytes(write_container(container))
+    body = import_body(tmp_path / "a.glb")
+    actor = load_actor(name, body)
+    grown = scaled(body, actor.height)
+    actor = on_its_own_soles(actor, grown)
+    lowest, highest = worst_gaps(actor, grown)
+    assert -5.0 < lowest <= highest < 5.0
+    for speed, step_frequency in GAITS[:-1]:
+        gait = delivered_gait(actor, speed, step_frequency)
+        assert gait.slide_peak < 5.0
+        assert gait.speed == pytest.approx(speed, rel=0.002)
+        assert gait.step_frequency == pytest.approx(step_frequency, rel=0.002)
 
 
 @pytest.mark.parametrize("worn", ["woman", "man"])
