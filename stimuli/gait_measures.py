@@ -41,7 +41,7 @@ def measure(clip: Clip) -> GaitMeasures:
 
 
 def measure_paths(paths: FootPaths, events: Sequence[FootEvent], name: str = "the motion") -> GaitMeasures:
-    """The gait over the steady strides of both feet; over those of one foot where no two are alike.
+    """The gait over the steady strides of both feet; speed and step frequency over one foot's where no two are alike.
 
     paths: the body's points; events: heel strikes and toe-offs, s from the first frame.
     raises: GaitError if no foot strikes twice, so that there is no whole stride
@@ -53,19 +53,18 @@ def measure_paths(paths: FootPaths, events: Sequence[FootEvent], name: str = "th
     if not strides:
         raise GaitError(f"{name}: every stride is faster than {FASTEST:g} m/s, which is no walk; check unit_to_m")
     used, steady = steady_strides(strides)
-    if not steady and len(used) > 1:
-        used = between_spreads(paths, used)
-    time = sum(stride.time for stride in used)
-    travel = sum(stride.travel for stride in used)
+    timed = used if steady or len(used) == 1 else between_spreads(paths, used)
+    time = sum(stride.time for stride in timed)
+    travel = sum(stride.travel for stride in timed)
     swing = np.median([np.ptp(_along(paths, index)) for index in (0, 1)])
-    on_the_spot = bool(travel / len(used) < STILL * swing)
+    on_the_spot = bool(travel / len(timed) < STILL * swing)
     speed = _belt_speed(paths, used) if on_the_spot else travel / time
     lengths, widths = _placements(paths, events, used, speed if on_the_spot else 0.0)
     shares = _stance_shares(events, used)
     return GaitMeasures(
-        gait=Gait.at_speed(speed, 120.0 * len(used) / time),
+        gait=Gait.at_speed(speed, 120.0 * len(timed) / time),
         speed=speed,
-        steps_used=len(used) + 1 if len({stride.side for stride in used}) == 2 else 2 * len(used),
+        steps_used=len(timed) + 1 if len({stride.side for stride in timed}) == 2 else 2 * len(timed),
         step_length_left=_mean(lengths[0]),
         step_length_right=_mean(lengths[1]),
         step_width=_mean(widths),

@@ -99,7 +99,7 @@ def _measured(clip: Clip) -> tuple[tuple[FootEvent, ...], GaitMeasures | None, l
     except GaitError as error:
         return events, None, [*warnings, str(error)]
     if not measures.steady and measures.steps_used > 2:
-        warnings.append("no two strides are alike, so that the measures are those of one foot's and mean little")
+        warnings.append("no two strides are alike: speed and step frequency are of one foot's and mean little")
     elif not measures.steady:
         warnings.append("only one stride could be used, so the step frequency is good to about 2 per cent")
     if measures.on_the_spot:

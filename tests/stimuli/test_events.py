@@ -274,6 +274,8 @@ def test_a_walk_without_two_strides_alike_is_measured_over_one_foots_strides_tha
     measures = measure(read_bvh(MOCAP / "bvh/cmu-cgspeed/cgspeed_max_131_01.bvh"))
     assert not measures.steady
     assert measures.steps_used == 4
+    assert np.all(np.isfinite([measures.step_length_left, measures.step_length_right, measures.step_width]))
+    assert np.all(np.isfinite([measures.stance_share_left, measures.stance_share_right]))
 
 
 def test_standing_still_is_no_walk():
