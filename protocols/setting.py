@@ -67,6 +67,21 @@ def value_of(setting: Any, levels: Mapping[str, Level]) -> Any:
     return value_of(values[levels[factor[1:]]], levels)
 
 
+def lacking(setting: Any, levels: Mapping[str, Level]) -> Iterator[tuple[str, Level, tuple[Level, ...]]]:
+    """The factor and its level for which a table has no value in a trial with these levels, and those it has one for.
+
+    Nothing where the setting has a value, or the trial no level of the factor.
+    """
+    if kind_of(setting) != TABLE:
+        return
+    ((factor, values),) = setting.items()
+    level = levels.get(factor[1:])
+    if level is not None and level not in values:
+        yield factor[1:], level, tuple(values)
+    elif level is not None:
+        yield from lacking(values[level], levels)
+
+
 def references(setting: Any) -> Iterator[str]:
     """Names of the factors a setting depends on, each as often as it is named."""
     kind = kind_of(setting)

@@ -16,7 +16,7 @@ from protocols.mistakes.planned_analysis import analysis_mistakes
 from protocols.orders.assignment import groups
 from protocols.orders.design import conditions
 from protocols.parts import Level
-from protocols.setting import Given, references, setting_mistakes, unfit
+from protocols.setting import Given, lacking, references, setting_mistakes, unfit
 from protocols.stimulus import Walk
 from protocols.study import ChoiceQuestion, Study
 from protocols.viewing import PLACED, viewing_mistakes
@@ -139,6 +139,7 @@ def _practice(study: Study) -> Iterator[Mistake]:
                 yield Mistake(where, no_such(factor, study.factors, "factor"), on_key=True)
             else:
                 yield from _training_level(study, factor, level, where)
+        yield from _without_value(study, trial.levels, ("practice", i))
 
 
 def _training_level(study: Study, factor: str, level: Any, where: Place) -> Iterator[Mistake]:
@@ -158,10 +159,17 @@ def _training_level(study: Study, factor: str, level: Any, where: Place) -> Iter
         if setting == f"${factor}":
             yield from unfit(level, kind, where, place)
             return
-        if factor in references(setting) and level not in study.factors[factor]:
-            known = ", ".join(map(str, study.factors[factor]))
-            yield Mistake(where, f"{level} has no value in {'.'.join(map(str, place))}; levels: {known}")
-            return
+
+
+def _without_value(study: Study, levels: Mapping[str, Level], where: Place) -> Iterator[Mistake]:
+    """The first table of a setting without a value for a level of a training trial, for each factor."""
+    found: dict[str, Mistake] = {}
+    for (setting, place, _), group in product(list(settings_of(study)), groups(study)):
+        for factor, level, known in lacking(setting, {**group, **levels}):
+            name = ".".join(map(str, place))
+            message = f"{level} has no value in {name}, which has {', '.join(map(str, known))}; add one there"
+            found.setdefault(factor, Mistake((*where, factor), message))
+    yield from found.values()
 
 
 def _choices(study: Study) -> dict[str, ChoiceQuestion]:

@@ -95,6 +95,15 @@ def test_a_mistake_is_named_with_line_column_and_what_is_allowed(old, new, at, s
     assert said.startswith(f"s.yaml:{place(text, at)}:"), (said, place(text, at))
 
 
+def test_a_training_trial_whose_level_a_table_does_not_know_is_told_and_may_be_given_a_value_there():
+    speeds = "{$actor: {F1: 1.0, F2: 1.0, M1: 1.0, M2: 1.0}}"
+    text = changed(("speed: $speed", f"speed: {speeds}"))
+    said = message(text)
+    assert "practice[0].actor: T1 has no value in stimulus.speed, which has F1, F2, M1, M2" in said
+    assert said.startswith(f"s.yaml:{place(text, 'T1, speed')}:"), said
+    parse_study("s.yaml", text.replace("M2: 1.0}}", "M2: 1.0, T1: 1.0, T2: 1.1}}"))
+
+
 def test_quoted_levels_are_not_blamed_on_the_training_trials():
     said = message(changed(("[0.8, 1.0, 1.2]", "['0.8', '1.0', '1.2']")))
     assert "practice" not in said
