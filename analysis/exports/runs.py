@@ -87,7 +87,7 @@ def read_runs(folder: Path) -> tuple[list[ExportedRun], list[str]]:
     """
     every = [_read(path, path.relative_to(folder).as_posix()) for path in journals_of(folder)]
     every, copies, left_out = without_copies(every)
-    left_out += [f"{run.participant}: {why}." for run, why in copies]
+    left_out += [f"{run.participant}: {why}; left out." for run, why in copies]
     runs = []
     for run in every:
         declined = any(t.record.get("agreed") is False for t in run.of("consent"))

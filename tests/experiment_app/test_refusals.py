@@ -8,11 +8,13 @@ import pytest
 from analysis.recorded.journal import read_study
 from experiment_app.command import run
 from experiment_app.errors import UsageError
+from experiment_app.opening import open_new
 from experiment_app.pictures.film import write_film
 from experiment_app.run_folder import participant_runs
 from stimuli.methods.errors import MethodError
 from stimuli.methods.styles import default_styles, store_style
 from tests.experiment_app.sessions import opened, play
+from tests.protocols.studies import short
 
 DESCRIPTION = "sex: male\nheight: 1.65\nweight: 65\nage: 30\n"
 
@@ -165,10 +167,10 @@ def test_a_copied_participant_counts_once_and_the_copy_is_named(tmp_path, capfd,
     study = tmp_path / "walk_ratio"
     there = study / "sourcedata" / ("sub-P01" if "/" not in copy else "sub-P01/run-1")
     shutil.copytree(there, study / "sourcedata" / copy)
-    once = f"P01: run 1 stands twice; the copy in {copy if '/' in copy else copy + '/run-1'} is left out"
+    once = f"P01: a copy of run 1 in {copy if '/' in copy else copy + '/run-1'}"
     assert run(["export", str(study), "--to", "csv", "--out", str(tmp_path / "csv")]) == 0
     told = " ".join(capfd.readouterr())
-    assert once in told
+    assert f"{once}; left out." in told
     assert "1 participants, 1 runs" in told
     recorded = read_study(study)
     assert [one.participant for one in recorded.runs] == ["P01"]
@@ -182,3 +184,55 @@ def test_a_renamed_participant_counts_by_the_journal_and_is_named(tmp_path):
     recorded = read_study(tmp_path / "walk_ratio")
     assert [one.participant for one in recorded.runs] == ["P01"]
     assert "sub-P1b/run-1 holds run 1 of participant P01; it counts as that." in recorded.warnings
+
+
+def merged_from_two_computers(tmp_path, second: str):
+    """The folder of the first computer, with the run of the second one's P01 in it as `second`."""
+    play(opened(tmp_path / "one"))
+    play(open_new(short(), "P01", tmp_path / "two", display={"room": 2}, simulated=True, seed=7))
+    there = tmp_path / "one" / "walk_ratio" / "sourcedata" / second
+    there.parent.mkdir(exist_ok=True)
+    shutil.copytree(tmp_path / "two" / "walk_ratio" / "sourcedata" / "sub-P01" / "run-1", there)
+    return tmp_path / "one" / "walk_ratio"
+
+
+def test_two_people_whom_two_computers_gave_one_id_are_told_apart_by_the_names_of_their_folders(tmp_path, capfd):
+    study = merged_from_two_computers(tmp_path, "sub-P01B/run-1")
+    recorded = read_study(study)
+    assert [(one.participant, one.header["seed"] == 7) for one in recorded.runs] == [("P01", False), ("P01B", True)]
+    assert not recorded.left_out
+    told = (
+        "sub-P01B/run-1 holds run 1 of participant P01, of which there is another recording; as its folder says it "
+        "counts as run 1 of participant P01B."
+    )
+    assert told in recorded.warnings
+    assert run(["export", str(study), "--to", "csv", "--out", str(tmp_path / "csv")]) == 0
+    said = " ".join(capfd.readouterr())
+    assert told in said
+    assert "2 participants, 2 runs" in said
+
+
+def test_somebody_who_came_back_at_another_computer_has_two_runs(tmp_path):
+    recorded = read_study(merged_from_two_computers(tmp_path, "sub-P01/run-2"))
+    assert [(one.participant, one.number) for one in recorded.runs] == [("P01", 1)]
+    assert recorded.left_out == (("P01", "run 2 (a later run; run 1 counts)"),)
+
+
+def test_two_recordings_that_no_folder_tells_apart_are_refused_with_the_way_out(tmp_path, capfd):
+    study = merged_from_two_computers(tmp_path, "sub-P01 (1)/run-1")
+    for command in (["analyse"], ["export", "--to", "csv"]):
+        said = refused([command[0], study, *command[1:], "--out", tmp_path / "out"], 1, capfd)
+        assert "sub-P01 (1)/run-1 and sub-P01/run-1 hold two recordings" in said
+        assert "Rename the folder of one of them, sub-P01B if" in said
+
+
+def test_of_a_run_that_went_on_after_it_was_copied_the_longer_journal_counts(tmp_path):
+    play(opened(tmp_path))
+    study = tmp_path / "walk_ratio"
+    home = study / "sourcedata" / "sub-P01"
+    shutil.copytree(home, study / "sourcedata" / "sub-backup")
+    whole = (home / "run-1" / "journal.jsonl").read_text(encoding="utf-8").splitlines(keepends=True)
+    (home / "run-1" / "journal.jsonl").write_text("".join(whole[:-9]), encoding="utf-8")
+    recorded = read_study(study)
+    assert [one.name for one in recorded.runs] == ["sourcedata/sub-backup/run-1/journal.jsonl"]
+    assert recorded.left_out == (("P01", "a copy of run 1 in sub-P01/run-1"),)
