@@ -2,14 +2,15 @@
 from several computers.
 
 A journal does not say that it is a copy, so data would count twice; and two computers may have given one ID to two
-people. Runs with the same header are one recording. Two recordings under one ID and number are told apart by the
-names of their folders, so that whoever merges folders decides, by renaming, whose is whose.
+people. Runs with the same header are one recording. A recording counts as its folder says, so that whoever puts
+folders together decides, by renaming, whose is whose; as its journal says where the folder's name is no ID.
 """
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
@@ -51,25 +52,22 @@ def without_copies(runs: Sequence[R]) -> tuple[list[R], list[tuple[R, str]], lis
 
     Raises AnalysisError where two recordings claim to be the same run and no folder's name tells them apart.
     """
-    once, copies = _each_recording(runs)
-    clashing = _clashing(once)
-    told = [_as_its_folder_says(run) if run in clashing and not _at_home(run) else run for run in once]
-    if still := _clashing(told):
-        raise AnalysisError(_not_told_apart(still[0], still[1]))
-    moved = [_moved(before, after) for before, after in zip(once, told, strict=True) if not _at_home(before)]
-    return told, copies, moved
+    copies: dict[Path, str] = {}
+    counted: dict[Path, R] = {}
+    for same in _recordings(runs):
+        kept = max(same, key=lambda run: run.path.stat().st_size)
+        copies |= {run.path: _copy(run, kept) for run in same if run is not kept}
+        counted[kept.path] = kept if any(map(_at_home, same)) else _as_its_folder_says(kept)
+    once = [counted[run.path] for run in runs if run.path in counted]
+    _refuse_clash(once)
+    moved = [_moved(run, counted[run.path]) for run in runs if run.path in counted and not _at_home(run)]
+    return once, [(run, copies[run.path]) for run in runs if run.path in copies], moved
 
 
-def _each_recording(runs: Sequence[R]) -> tuple[list[R], list[tuple[R, str]]]:
-    """One run of each recording, in the order given, and its copies: the longest counts, of equals the one at home."""
-    kept: dict[int, R] = {}
-    copies: dict[int, str] = {}
-    places = sorted(range(len(runs)), key=lambda place: (_claimed(runs[place]), str(runs[place].header)))
-    for _, group in groupby(places, key=lambda place: (_claimed(runs[place]), runs[place].header)):
-        same = sorted(group, key=lambda place: (-runs[place].path.stat().st_size, not _at_home(runs[place]), place))
-        kept[same[0]] = runs[same[0]]
-        copies |= {place: _copy(runs[place], runs[same[0]]) for place in same[1:]}
-    return [kept[place] for place in sorted(kept)], [(runs[place], copies[place]) for place in sorted(copies)]
+def _recordings(runs: Sequence[R]) -> Iterator[list[R]]:
+    """The runs that hold the same recording, one at home first."""
+    for _, alike in groupby(sorted(runs, key=_header), key=_header):
+        yield sorted(alike, key=lambda run: not _at_home(run))
 
 
 def _copy(copy: Recorded, kept: Recorded) -> str:
@@ -78,41 +76,37 @@ def _copy(copy: Recorded, kept: Recorded) -> str:
     return f"a copy of run {copy.number} in {_folder(copy)}, which went on otherwise than the one in {_folder(kept)}"
 
 
-def _clashing(runs: Sequence[R]) -> list[R]:
-    """The runs that claim to be the same run as another one, side by side."""
-    return [run for run in sorted(runs, key=_claimed) if sum(_claimed(run) == _claimed(other) for other in runs) > 1]
-
-
 def _as_its_folder_says(run: R) -> R:
     named = FOLDER.fullmatch(_folder(run))
     return replace(run, participant=named[1], number=int(named[2])) if named else run
 
 
-def _not_told_apart(one: Recorded, other: Recorded) -> str:
-    return (
-        f"{_folder(one)} and {_folder(other)} hold two recordings, begun {_begun(one.header)} and "
-        f"{_begun(other.header)}, that both are run {one.number} of participant {one.participant}. Rename the folder "
-        f"of one of them, sub-{one.participant}B if it is another person's, run-{one.number + 1} if it is the same person "
-        "again; it then counts as what its folder says."
-    )
+def _refuse_clash(runs: Sequence[Recorded]) -> None:
+    known: dict[tuple[str, int], Recorded] = {}
+    for run in runs:
+        other = known.setdefault((run.participant, run.number), run)
+        if other is not run:
+            raise AnalysisError(
+                f"{_folder(other)} and {_folder(run)} hold two recordings, begun {_begun(other)} and {_begun(run)}, "
+                f"that both are run {run.number} of participant {run.participant}. Rename the folder of one of them, "
+                f"sub-{run.participant}B if it is another person's, run-{run.number + 1} if it is the same person "
+                "again; it then counts as what its folder says."
+            )
 
 
 def _moved(before: Recorded, after: Recorded) -> str:
-    was = f"{_folder(before)} holds run {before.number} of participant {before.participant}"
-    if _claimed(before) == _claimed(after):
-        return f"{was}; it counts as that."
-    return (
-        f"{was}, of which there is another recording; as its folder says it counts as run {after.number} of "
-        f"participant {after.participant}."
-    )
+    whose = f"{_folder(before)} holds run {before.number} of participant {before.participant}"
+    if (before.participant, before.number) == (after.participant, after.number):
+        return f"{whose}; it counts as that."
+    return f"{whose}; as its folder says, it counts as run {after.number} of participant {after.participant}."
 
 
-def _claimed(run: Recorded) -> tuple[str, int]:
-    return run.participant, run.number
+def _header(run: Recorded) -> str:
+    return json.dumps(run.header, sort_keys=True)
 
 
-def _begun(header: Mapping[str, Any]) -> str:
-    return str(header.get("started", "at an unknown time"))
+def _begun(run: Recorded) -> str:
+    return str(run.header.get("started", "at an unknown time"))
 
 
 def _folder(run: Recorded) -> str:
@@ -120,4 +114,4 @@ def _folder(run: Recorded) -> str:
 
 
 def _at_home(run: Recorded) -> bool:
-    return _folder(run) == f"sub-{run.participant}/run-{run.number}"
+    return _folder(run) == f"sub-{run.header.get('participant')}/run-{run.header.get('run')}"

@@ -63,7 +63,7 @@ def arrivals(data: Path, study: str) -> list[Arrival]:
             header = header_of(latest)
             if header is None:
                 continue
-            known.append(Arrival(header["participant"], int(header["participant_number"]), last_end(latest)))
+            known.append(Arrival(person.name.removeprefix("sub-"), int(header["participant_number"]), last_end(latest)))
             break
     return known
 

@@ -177,13 +177,17 @@ def test_a_copied_participant_counts_once_and_the_copy_is_named(tmp_path, capfd,
     assert [f"{who}: {why}" for who, why in recorded.left_out] == [once]
 
 
-def test_a_renamed_participant_counts_by_the_journal_and_is_named(tmp_path):
+@pytest.mark.parametrize(
+    ("folder", "counts"),
+    [("sub-P1b", "as its folder says, it counts as run 1 of participant P1b"), ("sub-P01 old", "it counts as that")],
+)
+def test_a_renamed_participant_counts_as_the_folder_says_where_its_name_is_an_id(tmp_path, folder, counts):
     play(opened(tmp_path))
-    folder = tmp_path / "walk_ratio" / "sourcedata"
-    (folder / "sub-P01").rename(folder / "sub-P1b")
+    there = tmp_path / "walk_ratio" / "sourcedata"
+    (there / "sub-P01").rename(there / folder)
     recorded = read_study(tmp_path / "walk_ratio")
-    assert [one.participant for one in recorded.runs] == ["P01"]
-    assert "sub-P1b/run-1 holds run 1 of participant P01; it counts as that." in recorded.warnings
+    assert [one.participant for one in recorded.runs] == ["P1b" if folder == "sub-P1b" else "P01"]
+    assert f"{folder}/run-1 holds run 1 of participant P01; {counts}." in recorded.warnings
 
 
 def merged_from_two_computers(tmp_path, second: str):
@@ -201,10 +205,7 @@ def test_two_people_whom_two_computers_gave_one_id_are_told_apart_by_the_names_o
     recorded = read_study(study)
     assert [(one.participant, one.header["seed"] == 7) for one in recorded.runs] == [("P01", False), ("P01B", True)]
     assert not recorded.left_out
-    told = (
-        "sub-P01B/run-1 holds run 1 of participant P01, of which there is another recording; as its folder says it "
-        "counts as run 1 of participant P01B."
-    )
+    told = "sub-P01B/run-1 holds run 1 of participant P01; as its folder says, it counts as run 1 of participant P01B."
     assert told in recorded.warnings
     assert run(["export", str(study), "--to", "csv", "--out", str(tmp_path / "csv")]) == 0
     said = " ".join(capfd.readouterr())
@@ -234,5 +235,5 @@ def test_of_a_run_that_went_on_after_it_was_copied_the_longer_journal_counts(tmp
     whole = (home / "run-1" / "journal.jsonl").read_text(encoding="utf-8").splitlines(keepends=True)
     (home / "run-1" / "journal.jsonl").write_text("".join(whole[:-9]), encoding="utf-8")
     recorded = read_study(study)
-    assert [one.name for one in recorded.runs] == ["sourcedata/sub-backup/run-1/journal.jsonl"]
+    assert [(one.participant, one.path.parts[-3]) for one in recorded.runs] == [("P01", "sub-backup")]
     assert recorded.left_out == (("P01", "a copy of run 1 in sub-P01/run-1"),)
