@@ -84,8 +84,11 @@ def _material(raw: dict[str, Any], index: int, picture: Callable[[int], Picture 
             to_picture = _transform(moved)
             texture_set = int(moved.get("texCoord", texture_set))
     mode = str(raw.get("alphaMode", "OPAQUE")).lower()
+    name = str(raw.get("name", f"material {index}"))
+    if texture is None and "emissiveTexture" in raw:
+        problem = f"the picture of {name!r} is one that glows (emissive), which is not drawn; make it its base colour"
     return Material(
-        name=str(raw.get("name", f"material {index}")),
+        name=name,
         colour=np.clip(np.array([*(float(c) for c in factor), 1.0][:4]), 0, 1),
         roughness=float(np.clip(float(pbr.get("roughnessFactor", 1.0)) if roughness is None else roughness, 0.05, 1)),
         picture=found,

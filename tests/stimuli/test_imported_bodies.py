@@ -12,7 +12,7 @@ from PIL import Image
 
 from stimuli.actors import load_actor, people
 from stimuli.bodies.imported_bodies import imported_names, stored
-from stimuli.bodies.known import body_names, load_body, scaled
+from stimuli.bodies.known import body_names, haircut_names, load_body, scaled, variant_names
 from stimuli.bodies.retarget import longest_step, on_its_own_soles, sole_gaps
 from stimuli.body_files.container import Container, open_container, read_container, write_container
 from stimuli.body_files.errors import BodyError
@@ -86,6 +86,15 @@ def test_a_picture_without_places_on_it_is_a_note(tmp_path):
     body, explained = import_and_explain(tmp_path / "a.glb")
     assert body.levels[0][0].picture is None
     assert any("has a picture, but a mesh that wears it does not say where" in said for said in explained.problems)
+
+
+def test_a_picture_that_only_glows_is_a_note(tmp_path):
+    container = read_container(with_picture("OPAQUE"), "a")
+    for material in container.document["materials"]:
+        material["emissiveTexture"] = material["pbrMetallicRoughness"].pop("baseColorTexture")
+    (tmp_path / "a.glb").write_bytes(write_container(container))
+    _, explained = import_and_explain(tmp_path / "a.glb")
+    assert any("glows (emissive), which is not drawn" in said for said in explained.problems)
 
 
 def test_an_imported_body_is_known_by_its_name(library):
@@ -184,9 +193,17 @@ def test_a_foot_without_toes_rolls_over_its_tip_and_delivers_what_is_asked(tmp_p
 @pytest.mark.parametrize("worn", ["woman", "man"])
 @pytest.mark.parametrize("name", people())
 def test_shipped_soles_stay_within_five_millimetres_of_the_ground(name, worn):
-    """Matched and mismatched; haircuts and builds stand on the same feet."""
+    """Matched and mismatched."""
     body = load_body(worn)
     actor = load_actor(name, body)
+    lowest, highest = worst_gaps(actor, scaled(body, actor.height))
+    assert -5.0 < lowest <= highest < 5.0
+
+
+@pytest.mark.parametrize("worn", [*haircut_names(), *variant_names()])
+def test_haircuts_and_builds_stand_on_the_same_feet(worn):
+    body = load_body(worn)
+    actor = load_actor("T1", body)
     lowest, highest = worst_gaps(actor, scaled(body, actor.height))
     assert -5.0 < lowest <= highest < 5.0
 
