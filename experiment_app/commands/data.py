@@ -42,7 +42,7 @@ def export(
         out.print(
             f"Check it with: bids-validator-deno {typed(out_folder)}  (pip install 'gaitlab[validate]')", markup=False
         )
-    note_derived(folder, Derived("export", to, str(out_folder.resolve())))
+    note_derived(folder, "export", to, out_folder)
     return 0
 
 
@@ -111,6 +111,8 @@ def withdraw(
 
     plan = plan_withdrawal(folder, participant)
     out.print(f"Everything of participant {participant} in {plan.person} will be deleted.", markup=False)
+    for copy in plan.copies:
+        out.print(f"So will the copy in {copy}.", markup=False)
     for made in plan.made:
         out.print(f"Then made again without {participant}: the {made.sentence}", markup=False)
     if not yes and not _sure(participant):

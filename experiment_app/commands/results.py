@@ -22,7 +22,7 @@ def analyse(
 ) -> int:
     """Follow the study file's planned analysis: tables, figures and one self-contained report."""
     from analysis.planned_analysis import analyse as planned_analysis
-    from experiment_app.participants.derived import Derived, note_derived
+    from experiment_app.participants.derived import note_derived
 
     with out.status("Analysing"):
         outcome = planned_analysis(folder, out_folder)
@@ -32,7 +32,7 @@ def analyse(
         out.print(sentence, markup=False)
     for path in outcome.paths:
         out.print(f"  {path}", markup=False)
-    note_derived(folder, Derived("report", "", str(out_folder.resolve())))
+    note_derived(folder, "report", "", out_folder)
     return 0
 
 

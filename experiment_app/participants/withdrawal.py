@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,15 +26,18 @@ LEAVING = ".withdrawing-sub-"
 class Withdrawal:
     """What a withdrawal will touch.
 
-    folder: DATA/<study>; person: the participant's folder, there or half removed; files: how many it holds.
-    made: exports and reports that are made again from those who stay.
+    folder: DATA/<study>; person: the participant's folder, there or half removed; copies: folders of the same runs
+    elsewhere in the study's folder; files: how many these hold.
+    made: exports and reports that are made again from those who stay; gone: those that are not where they were made.
     """
 
     folder: Path
     participant: str
     person: Path
+    copies: tuple[Path, ...]
     files: int
     made: tuple[Derived, ...]
+    gone: tuple[Derived, ...]
 
 
 def plan_withdrawal(folder: Path, participant: str) -> Withdrawal:
@@ -45,11 +49,20 @@ def plan_withdrawal(folder: Path, participant: str) -> Withdrawal:
         person = data / f"{LEAVING}{participant}"  # a withdrawal that was killed half-way is finished
     if not person.is_dir():
         raise unknown_participant(folder, participant)
-    for journal in person.glob(f"run-*/{JOURNAL}"):
+    copies = _copies(folder, person)
+    for journal in [*person.glob(f"run-*/{JOURNAL}"), *(copy / JOURNAL for copy in copies)]:
         with open(journal, "rb") as file:
             lock(file, journal)
-    files = sum(path.is_file() for path in person.rglob("*"))
-    return Withdrawal(folder, participant, person, files, tuple(derived(folder)))
+    files = sum(path.is_file() for place in (person, *copies) for path in place.rglob("*"))
+    made, gone = derived(folder)
+    return Withdrawal(folder, participant, person, tuple(copies), files, tuple(made), tuple(gone))
+
+
+def _copies(folder: Path, person: Path) -> list[Path]:
+    """Folders of runs elsewhere in the study's folder that hold the same recording as one of the participant's."""
+    own = [header for journal in person.glob(f"run-*/{JOURNAL}") if (header := header_of(journal)) is not None]
+    others = [journal for journal in journals(folder) if journal.parent.parent != person]
+    return [journal.parent for journal in others if header_of(journal) in own]
 
 
 def withdraw(plan: Withdrawal, remake: Callable[[Derived], None], say: Callable[[str], None]) -> bool:
@@ -59,6 +72,10 @@ def withdraw(plan: Withdrawal, remake: Callable[[Derived], None], say: Callable[
     problem is told, not raised.
     """
     place = _place(plan)
+    for number, copy in enumerate(plan.copies, start=1):  # into the folder that is removed, which a kill does not stop
+        os.rename(copy, _free_name(plan.person / f"copy-{number}"))
+        with suppress(OSError):
+            copy.parent.rmdir()
     leaving = plan.person.with_name(f"{LEAVING}{plan.participant}")
     if plan.person != leaving:
         os.rename(plan.person, leaving)
@@ -80,8 +97,17 @@ def withdraw(plan: Withdrawal, remake: Callable[[Derived], None], say: Callable[
             whole = False
             why = str(error).rstrip(".")
             say(f"NOT made again: {made.sentence} ({why}). It may still hold {plan.participant}: delete it.")
+    for made in plan.gone:
+        say(f"No longer there: {made.sentence}. If it was moved, it still holds {plan.participant}: delete it.")
     say("Copies made by hand, backups and anything published are out of reach; ask whoever keeps them.")
     return whole
+
+
+def _free_name(path: Path) -> Path:
+    """The path, or with the first letters added to it that make it new."""
+    while path.exists():
+        path = path.with_name(f"{path.name}x")
+    return path
 
 
 def _place(plan: Withdrawal) -> int | None:

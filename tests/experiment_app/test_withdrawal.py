@@ -116,4 +116,43 @@ def test_exports_and_reports_are_noted_once_however_often_they_are_made(data, tm
     for _ in range(2):
         run(["export", str(data), "--to", "csv", "--out", str(tmp_path / "csv")])
     (line,) = (data / "derived.jsonl").read_text(encoding="utf-8").splitlines()
-    assert json.loads(line) == {"what": "export", "to": "csv", "out": str(tmp_path / "csv")}
+    assert json.loads(line) == {"what": "export", "to": "csv", "out": str(tmp_path / "csv"), "near": "../../csv"}
+
+
+def test_a_withdrawal_finds_exports_and_reports_that_were_moved_together_with_the_data(data, tmp_path, capfd):
+    for command in (["export", str(data), "--to", "csv"], ["analyse", str(data)]):
+        assert run([*command, "--out", str(tmp_path / command[0])]) == 0
+    moved = tmp_path / "another computer"
+    moved.mkdir()
+    for name in ("data", "export", "analyse"):
+        (tmp_path / name).rename(moved / name)
+    assert run(["withdraw", str(moved / "data" / "walk_ratio"), "--participant", "WITHDRAWN77", "--yes"]) == 0
+    assert holding(tmp_path, b"WITHDRAWN77") == []
+    assert capfd.readouterr().out.count("Made again without participant WITHDRAWN77") == 2
+
+
+def test_a_withdrawal_in_a_copy_of_everything_leaves_the_original_alone(data, tmp_path):
+    assert run(["export", str(data), "--to", "csv", "--out", str(tmp_path / "csv")]) == 0
+    copy = tmp_path / "copy"
+    shutil.copytree(tmp_path / "data", copy / "data")
+    shutil.copytree(tmp_path / "csv", copy / "csv")
+    assert run(["withdraw", str(copy / "data" / "walk_ratio"), "--participant", "WITHDRAWN77", "--yes"]) == 0
+    assert holding(copy, b"WITHDRAWN77") == []
+    assert holding(tmp_path / "csv", b"WITHDRAWN77") != []
+
+
+def test_an_export_that_is_no_longer_where_it_was_made_is_named(data, tmp_path, capfd):
+    assert run(["export", str(data), "--to", "csv", "--out", str(tmp_path / "csv")]) == 0
+    (tmp_path / "csv").rename(tmp_path / "for the reviewers")
+    assert run(["withdraw", str(data), "--participant", "WITHDRAWN77", "--yes"]) == 0
+    said = " ".join(capfd.readouterr().out.split())
+    assert f"No longer there: csv export in {tmp_path / 'csv'}. If it was moved, it still holds WITHDRAWN77" in said
+
+
+@pytest.mark.parametrize("copy", ["sub-WITHDRAWN77 copy/run-1", "sub-P09/run-1", "sub-WITHDRAWN77/run-1 (1)"])
+def test_copies_inside_the_folder_of_data_go_too(data, tmp_path, copy):
+    shutil.copytree(data / "sourcedata" / "sub-WITHDRAWN77" / "run-1", data / "sourcedata" / copy)
+    assert run(["analyse", str(data), "--out", str(tmp_path / "report")]) == 0
+    assert run(["withdraw", str(data), "--participant", "WITHDRAWN77", "--yes"]) == 0
+    assert holding(tmp_path, b"WITHDRAWN77") == []
+    assert sorted(path.name for path in (data / "sourcedata").iterdir()) == ["sub-P01", "sub-P03"]
