@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from importlib.resources import files
+from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
@@ -14,6 +15,16 @@ SHIPPED = sorted(p.name.removesuffix(".yaml") for p in (files("protocols") / "st
 StudyArgument = Annotated[
     str, Parameter(help=f"A study file (YAML), or the name of a shipped study: {', '.join(SHIPPED)}.")
 ]
+
+
+def require_ending(option: str, path: Path | None, what: str, example: str) -> None:
+    """Raises UsageError when a file to be written has not the example's ending, so that it never replaces another kind.
+
+    A journal or a study file named by a slip of the keyboard stays as it is.
+    """
+    ending = Path(example).suffix
+    if path is not None and path.suffix.lower() != ending:
+        raise UsageError(f"{option} {path}: {what}; let its name end in {ending}, as {example}.")
 
 
 def picture_size(text: str) -> tuple[int, int]:

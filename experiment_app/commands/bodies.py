@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 from cyclopts import App, Parameter
 
+from experiment_app.commands.arguments import require_ending
 from experiment_app.terminal import out
 
 body_commands = App(name="body", help="Bodies: check a character from another program, import it, list them all.")
@@ -31,6 +32,7 @@ def check_body(
     from stimuli.body_files.errors import BodyError
     from stimuli.body_files.shown import read_shown
 
+    require_ending("--picture", picture, "the picture is a PNG", "anna.png")
     path = None if json else picture or Path(f"{file.stem}-check.png")
     try:
         report = body_report(file)

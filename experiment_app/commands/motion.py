@@ -9,6 +9,7 @@ from typing import Annotated
 
 from cyclopts import App, Parameter
 
+from experiment_app.commands.arguments import require_ending
 from experiment_app.errors import UsageError
 from experiment_app.terminal import out, progress_bar
 
@@ -80,6 +81,7 @@ def pose(
     from stimuli.quality.travelling import travelling_joints
     from stimuli.skeleton import JOINTS, PARENTS
 
+    require_ending("--out", out_file, "poses are an npz file", "poses.npz")
     if not 0.0 < seconds <= 3600.0 or not 1.0 <= rate <= 10_000.0:
         raise UsageError("--seconds must be more than 0 and at most 3600, --rate from 1 to 10000 Hz.")
     _use(library)
@@ -122,6 +124,7 @@ def check_actor(
     from experiment_app.pictures.actor_pages import quality_page, table_lines
     from stimuli.quality.delivery import quality_table
 
+    require_ending("--picture", picture, "the page is a PNG", "page.png")
     if not (1 <= speeds <= 100 and 1 <= step_frequencies <= 100):
         raise UsageError("--speeds and --step-frequencies must be from 1 to 100.")
     _use(library)
@@ -172,6 +175,7 @@ def show(
     """Look at an actor: a window with the keyboard, or a film strip where there is no screen."""
     from experiment_app.pictures.actor_pages import film_strip, has_screen, walk_in_window
 
+    require_ending("--picture", picture, "the strip is a PNG", "strip.png")
     _use(library)
     actor = _load(name)
     speed, step_frequency = _gait(actor, speed, step_frequency)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from experiment_app.commands.arguments import StudyArgument
+from experiment_app.commands.arguments import StudyArgument, require_ending
 from experiment_app.commands.data import StudyFolder
 from experiment_app.errors import UsageError
 from experiment_app.terminal import out, problems, say, with_progress
@@ -72,6 +72,8 @@ def power(
     )
     from experiment_app.checking.check import checked_study
 
+    require_ending("--out", part, "counts are JSON", "part1.json")
+    require_ending("--plot", plot, "the picture is a PNG", "power.png")
     file = checked_study(study)
     notes = power_notes(file.text)
     if combine:

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from experiment_app.commands.arguments import StudyArgument, frame_rate, picture_size
+from experiment_app.commands.arguments import StudyArgument, frame_rate, picture_size, require_ending
 from experiment_app.errors import RunError, UsageError
 from experiment_app.terminal import out, problems, say, with_progress
 
@@ -96,6 +96,7 @@ def certificate(
     """The timing certificate of a run: frames, late frames, key times, a verdict, a paragraph for the paper."""
     from experiment_app.timing.page import certificate_of
 
+    require_ending("--out", path, "a certificate is Markdown", "certificate.md")
     text = certificate_of(run_folder)
     if path is None:
         out.print(text, markup=False, end="")

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from experiment_app.commands.arguments import StudyArgument
+from experiment_app.commands.arguments import StudyArgument, require_ending
 from experiment_app.errors import UsageError
 from experiment_app.terminal import out, problems, say, typed, with_progress
 
@@ -41,6 +41,7 @@ def schema(
     """Write the JSON Schema of study files, with which editors complete and check them."""
     from experiment_app.checking.check import schema_text
 
+    require_ending("--out", path, "a schema is JSON", "study.schema.json")
     path.write_text(schema_text(), encoding="utf-8")
     out.print(f"Schema written to {path}; name it in a study file's first line:", markup=False)
     out.print(f"# yaml-language-server: $schema={path.name}", markup=False)
@@ -60,8 +61,7 @@ def check(
     from experiment_app.checking.balance import what_participant_sees
     from experiment_app.checking.check import checked_study, design_picture, notes_on, summary
 
-    if picture is not None and picture.suffix.lower() != ".png":
-        raise UsageError(f"--picture {picture}: the picture is a PNG; let its name end in .png, as balance.png.")
+    require_ending("--picture", picture, "the picture is a PNG", "balance.png")
     if participant_number is not None and participant_number < 1:
         raise UsageError(f"--participant-number {participant_number}: numbers of arrival begin at 1.")
     file = checked_study(study)

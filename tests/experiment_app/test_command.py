@@ -12,6 +12,7 @@ import pytest
 
 from experiment_app.command import app, run
 from protocols.study_file import read_study
+from tests.experiment_app.sessions import opened, play
 from tests.protocols.studies import changed
 
 COMMANDS = tuple(name for name in app if not name.startswith("-"))
@@ -135,6 +136,34 @@ def test_wrong_usage_is_status_2_and_a_sentence(arguments, capfd):
     text = said(capfd)
     assert text.strip()
     assert "Traceback" not in text
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["certificate", "data/walk_ratio/sourcedata/sub-P01/run-1", "--out"],
+        ["schema", "--out"],
+        ["check", "walk_ratio", "--picture"],
+        ["power", "walk_ratio", "--experiments", "1", "--workers", "1", "--out"],
+        ["power", "walk_ratio", "--experiments", "1", "--workers", "1", "--plot"],
+        ["actor", "pose", "F1", "--out"],
+        ["actor", "check", "F1", "--picture"],
+        ["actor", "show", "F1", "--picture"],
+        ["body", "check", "anna.glb", "--picture"],
+        ["film", "walk_ratio", "--out"],
+        ["replay", "data/walk_ratio/sourcedata/sub-P01/run-1", "--film"],
+    ],
+)
+@pytest.mark.parametrize("name", ["journal.jsonl", "my_study.yaml"])
+def test_nothing_that_is_written_by_name_can_replace_a_journal_or_a_study_file(
+    tmp_path, monkeypatch, capfd, command, name
+):
+    monkeypatch.chdir(tmp_path)
+    Path(name).write_text("worth keeping")
+    play(opened(tmp_path / "data"))
+    assert run([*command, name]) == 2
+    assert "Traceback" not in said(capfd)
+    assert Path(name).read_text() == "worth keeping"
 
 
 def test_no_display_is_a_sentence_with_the_way_out(tmp_path):
