@@ -224,3 +224,15 @@ def lock(file: IO[bytes], path: Path) -> None:
         raise UsageError(
             f"{path.parent} is in use by another gaitlab; end that session first, or use another participant ID."
         ) from None
+
+
+def in_use(journal: Path) -> bool:
+    """Whether a gaitlab of this computer has the journal open; one at another computer need not be seen."""
+    try:
+        with open(journal, "rb") as file:
+            lock(file, journal)
+    except UsageError:
+        return True
+    except OSError:
+        pass
+    return False

@@ -63,9 +63,15 @@ def console(
     from experiment_app.console.progress import status
     from experiment_app.console.screen import show
     from experiment_app.console.watching import Watching, newest_run
+    from experiment_app.run_folder import in_use
 
     run = newest_run(folder, participant)
     watching = Watching(run)
+    if not watching.look().ended and not in_use(run.journal):
+        problems.print(
+            "Note: no gaitlab on this computer has this run open; it was killed, or goes on at another computer.",
+            style="yellow", markup=False,
+        )  # fmt: skip
     if ask_for is not None:
         ended = watching.look().ended
         if ended:

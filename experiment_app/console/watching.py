@@ -7,7 +7,7 @@ from pathlib import Path
 from experiment_app.console.progress import Watched, after
 from experiment_app.errors import UsageError
 from experiment_app.opening import recorded_plan
-from experiment_app.run_folder import JOURNAL, Run, run_at
+from experiment_app.run_folder import JOURNAL, Run, in_use, run_at
 from protocols.record import DamagedLineError, decode_line
 
 
@@ -44,12 +44,16 @@ def watched_so_far(run: Run, total: int) -> Watched:
 
 
 def newest_run(folder: Path, participant: str = "") -> Run:
-    """The run of a study's folder that was written to last, of a participant if one is named; raises UsageError."""
+    """The run of a study's folder that is going on, else that was written to last; of a participant if one is named.
+
+    Raises UsageError when there is none.
+    """
     found = folder.glob(f"sourcedata/sub-{participant or '*'}/run-*/{JOURNAL}")
     journals = sorted(found, key=lambda path: path.stat().st_mtime)
     if not journals:
         whose = f" of participant {participant}" if participant else ""
         raise UsageError(f"{folder} holds no run{whose}; name a study's folder of data, as data/walk_ratio.")
-    if not journals[-1].stat().st_size:
-        raise UsageError(f"{journals[-1]} is empty yet; try again in a moment.")
-    return run_at(journals[-1])
+    newest = next(filter(in_use, reversed(journals)), journals[-1])  # copying and unzipping make old files new
+    if not newest.stat().st_size:
+        raise UsageError(f"{newest} is empty yet; try again in a moment.")
+    return run_at(newest)

@@ -208,6 +208,26 @@ def test_the_status_line_of_a_run_is_written_by_its_own_thread_and_only_to_a_ter
     assert newest.rstrip().endswith("ended: finished")
 
 
+def test_the_run_that_is_going_on_is_watched_though_an_old_one_was_copied_later(tmp_path, capfd):
+    play(opened(tmp_path, "P01"))
+    going_on = opened(tmp_path, "P02")
+    old = tmp_path / "walk_ratio/sourcedata/sub-P01/run-1/journal.jsonl"
+    os.utime(old, (time.time() + 60, time.time() + 60))  # as copying and unzipping do
+    assert newest_run(tmp_path / "walk_ratio").participant == "P02"
+    going_on.journal.close()
+    assert newest_run(tmp_path / "walk_ratio").participant == "P01"
+
+
+def test_a_run_that_nobody_has_open_is_watched_and_asked_with_a_note(tmp_path, capfd):
+    run = opened(tmp_path, "P01")
+    once = ["console", str(tmp_path / "walk_ratio"), "--once"]
+    assert gaitlab(once) == 0
+    assert "no gaitlab on this computer has this run open" not in " ".join(capfd.readouterr().err.split())
+    run.journal.close()  # as after a power cut: no end is recorded
+    assert gaitlab(once) == 0
+    assert "no gaitlab on this computer has this run open" in " ".join(capfd.readouterr().err.split())
+
+
 def test_the_console_names_what_is_missing(tmp_path):
     with pytest.raises(UsageError, match="holds no run of participant P09"):
         newest_run(tmp_path, "P09")
