@@ -136,9 +136,9 @@ def _marginal_means(results: PlannedResults) -> pd.DataFrame:
     parts = []
     if results.means is not None:
         for effect in results.anova["effect"]:
-            factors = effect.split(":")
-            table = emmeans_of(marginal_means(results.means, factors), results.plan.model)
-            level = [" × ".join(cell) for cell in table[factors].itertuples(index=False)]
+            marginal = marginal_means(results.means, effect.split(":"))
+            level = [" × ".join(cell) for cell in marginal.cells]
+            table = emmeans_of(marginal, results.plan.model)
             parts.append(table.assign(effect=effect, level=level)[columns])
     return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=columns)
 

@@ -149,9 +149,10 @@ def _slopes(
     span = float(np.ptp(x))
     counts = np.bincount(cell)
     y = y - (np.bincount(cell, y) / counts)[cell]
+    rounding = 1e-26 * np.bincount(who, x * x)
     x = x - (np.bincount(cell, x) / counts)[cell]
     xx, xy = np.bincount(who, x * x), np.bincount(who, x * y)
-    usable = xx > 1e-12 * max(1.0, float(xx.max(initial=0.0)))
+    usable = xx > np.maximum(rounding, 1e-12 * xx.max(initial=0.0))
     return xy[usable] / xx[usable], span
 
 

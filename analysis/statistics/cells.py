@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 from analysis.errors import AnalysisError, AnalysisWarning, listed
-from analysis.statistics.columns import labels, numbers, require
+from analysis.statistics.columns import labels, numbers, require, require_no_colon
 
 Levels = Mapping[str, Sequence[Any]]
 
@@ -44,7 +44,7 @@ class CellMeans:
 
 def names_of(factors: str | Sequence[str]) -> tuple[str, ...]:
     """One name or several, as a tuple."""
-    return (factors,) if isinstance(factors, str) else tuple(factors)
+    return (factors,) if isinstance(factors, str) or not isinstance(factors, Iterable) else tuple(factors)
 
 
 def cell_means(
@@ -65,6 +65,7 @@ def cell_means(
     factors = (*within, *between)
     _check_names(dv, subject, factors)
     require(data, [dv, subject, *factors])
+    require_no_colon(factors)
     order = dict(levels or {})
     values = numbers(data, dv)
     people = labels(data, subject)
@@ -131,7 +132,7 @@ def cell_means(
 
 def _check_names(dv: str, subject: str, factors: Sequence[str]) -> None:
     named = [dv, subject, *factors]
-    twice = sorted({name for name in named if named.count(name) > 1})
+    twice = [name for name in dict.fromkeys(named) if named.count(name) > 1]
     if twice:
         raise AnalysisError(f"{listed(map(repr, twice))} is named twice; measure, participant and factors differ.")
     if not factors:

@@ -26,9 +26,9 @@ class Labels:
 
 
 def label(value: Any) -> str:
-    """The text of a level: trimmed, and 80.0 written as 80."""
+    """The text of a level: trimmed, and 80.0 written as 80; whole numbers keep all their digits."""
     if isinstance(value, (float, np.floating)):
-        return f"{value:.12g}"
+        return f"{value:.0f}" if abs(value) < 2**53 and value == int(value) else f"{value:.12g}"
     return str(value).strip()
 
 
@@ -61,14 +61,42 @@ def _is_number(text: str) -> bool:
         return False
 
 
-def require(data: pd.DataFrame, names: Iterable[str]) -> None:
-    """Every name is a column of `data`, or a sentence that says which are not."""
+def require(data: pd.DataFrame, names: Sequence[str]) -> None:
+    """Every name is one column of `data`, or a sentence that says which are not."""
+    if not all(isinstance(name, str) for name in names):
+        raise AnalysisError(
+            "Columns are named by text, not by number or position; "
+            "give them names first, as data.columns = data.columns.map(str)."
+        )
     missing = [name for name in names if name not in data.columns]
     if missing:
         known = listed([repr(str(c)) for c in data.columns], 20)
         raise AnalysisError(f"There is no column {listed(map(repr, missing))}; the columns are {known}.")
+    twice = [name for name in dict.fromkeys(names) if list(data.columns).count(name) > 1]
+    if twice:
+        raise AnalysisError(f"There are several columns called {listed(map(repr, twice))}; keep or rename all but one.")
     if len(data) == 0:
         raise AnalysisError("The table has no rows.")
+
+
+def require_other_names(factors: Iterable[str], taken: Iterable[str]) -> None:
+    """No factor is called as a column of the result, which would overwrite its levels. Raises AnalysisError."""
+    columns = set(taken)
+    clashing = [name for name in factors if name in columns]
+    if clashing:
+        raise AnalysisError(
+            f"The result has a column {listed(map(repr, clashing))} of its own; rename the factor, "
+            f"as data.rename(columns={{{clashing[0]!r}: {clashing[0] + '_factor'!r}}})."
+        )
+
+
+def require_no_colon(factors: Iterable[str]) -> None:
+    """A colon joins the factors of an interaction, so none has it in its name. Raises AnalysisError."""
+    odd = [name for name in factors if ":" in name]
+    if odd:
+        raise AnalysisError(
+            f"{listed(map(repr, odd))}: a colon joins the factors of an interaction (as 'a:b'); rename the column."
+        )
 
 
 def numbers(data: pd.DataFrame, name: str) -> np.ndarray:
@@ -78,6 +106,11 @@ def numbers(data: pd.DataFrame, name: str) -> np.ndarray:
     (rows are counted from 1, without the heading).
     """
     column = data[name]
+    if pd.api.types.is_datetime64_any_dtype(column) or pd.api.types.is_timedelta64_dtype(column):
+        raise AnalysisError(
+            f"Column {name!r} must hold numbers, but it holds times; write durations in seconds, "
+            f"as data[{name!r}].dt.total_seconds()."
+        )
     if pd.api.types.is_bool_dtype(column) or pd.api.types.is_numeric_dtype(column):
         values = column.to_numpy(dtype=np.float64, na_value=np.nan)
     else:
@@ -103,9 +136,9 @@ def labels(data: pd.DataFrame, name: str, order: Sequence[Any] | None = None) ->
     """Column `name` as levels in order: `order` if given, else the order of a categorical column,
     else numbers by size and words by alphabet.
 
-    Blanks around a label are removed (and noted). Labels that differ in capitals only, or that are
-    not in `order`, are an AnalysisError naming the odd level and its number of rows; so is a level of
-    `order` that no row has.
+    Blanks around a label are removed (and noted); a row with nothing but blanks has no label. Labels
+    that differ in capitals only, or that are not in `order`, are an AnalysisError naming the odd level
+    and its number of rows; so is a level of `order` that no row has.
     """
     column = data[name]
     categorical = isinstance(column.dtype, pd.CategoricalDtype)
@@ -113,11 +146,11 @@ def labels(data: pd.DataFrame, name: str, order: Sequence[Any] | None = None) ->
     numeric = pd.api.types.is_float_dtype(raw_levels)
     key = numeric_label if numeric else label
     texts = [key(value) for value in raw_levels]
-    known = dict.fromkeys(texts)
+    known = dict.fromkeys(text for text in texts if text)
     notes = []
     if categorical and order is None:
         wanted = [key(value) for value in column.cat.categories]
-        unused = [text for text in wanted if text not in known]
+        unused = [text for text in wanted if text and text not in known]
         if unused:
             notes.append(f"No row has the level {listed(map(repr, unused))} of {name!r}; it was left out.")
         ordered = [text for text in dict.fromkeys(wanted) if text in known]
@@ -131,7 +164,7 @@ def labels(data: pd.DataFrame, name: str, order: Sequence[Any] | None = None) ->
         if isinstance(value, str) and value != text and text in {label(v) for v in raw_levels if v != value}:
             rows = int(np.sum(raw_codes == texts.index(text)))
             notes.append(f"{name!r}: {value!r} was read as {text!r} (blanks removed; {rows} rows in all).")
-    place = {text: position for position, text in enumerate(ordered)}
+    place = {text: position for position, text in enumerate(ordered)} | {"": -1}
     lookup = np.array([*(place[text] for text in texts), -1], dtype=np.intp)
     return Labels(lookup[raw_codes], same_decimals(ordered) if numeric else tuple(ordered), tuple(notes))
 
@@ -149,7 +182,7 @@ def _rows_of(text: str, texts: list[str], codes: np.ndarray) -> int:
 
 def _check_levels(name: str, ordered: list[str], texts: list[str], codes: np.ndarray) -> None:
     for text in texts:
-        if text not in ordered:
+        if text and text not in ordered:
             rows = _rows_of(text, texts, codes)
             raise AnalysisError(
                 f"{name!r} has the level {text!r} in {rows} row(s), which is not one of "

@@ -11,8 +11,11 @@ from scipy import special
 from analysis.errors import AnalysisError, check_share
 from analysis.statistics.adjust import METHODS, bonferroni, holm
 from analysis.statistics.cells import Levels, cell_means, names_of
+from analysis.statistics.columns import require_other_names
 from analysis.statistics.marginal_means import MarginalMeans, check_model, marginal_means, variance_and_df
 from analysis.statistics.studentized_range import critical_value, survival
+
+COLUMNS = ("a", "b", "estimate", "se", "df", "t", "p", "p_unadjusted", "ci_low", "ci_high", "d_av", "d_z")
 
 
 def pairwise(
@@ -46,6 +49,7 @@ def pairwise(
     check_share("level", level, 0.95)
     if adjust not in METHODS:
         raise AnalysisError(f"adjust must be one of {', '.join(METHODS)}, not {adjust!r}.")
+    require_other_names(names_of(by), COLUMNS)
     means = cell_means(data, dv, subject, within, between, levels)
     return pairwise_of(
         marginal_means(means, (*names_of(by), *names_of(factors))), len(names_of(by)), model, adjust, level

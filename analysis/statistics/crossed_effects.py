@@ -14,7 +14,7 @@ from scipy import special, stats
 
 from analysis.errors import AnalysisError, check_share
 from analysis.statistics.cells import Levels, names_of
-from analysis.statistics.columns import labels, numbers, require
+from analysis.statistics.columns import labels, numbers, require, require_no_colon
 from analysis.statistics.contrasts import subsets, sum_to_zero
 from analysis.statistics.restricted_likelihood import Fitted, Products
 
@@ -49,6 +49,7 @@ def mixed_model(
     check_share("level", level, 0.95)
     names, numeric = names_of(factors), names_of(covariates)
     require(data, [dv, subject, stimulus, *names, *numeric])
+    require_no_colon((*names, *numeric))
     if subject == stimulus:
         raise AnalysisError(f"{subject!r} is named as participant and as stimulus; name the column of each.")
     y = numbers(data, dv)
@@ -70,11 +71,24 @@ def mixed_model(
     products = Products(
         len(y), X.T @ X, X.T @ y / scale, float(y @ y) / scale**2, Z.T @ Z, Z.T @ X, Z.T @ y / scale, group
     )
+    _check_remainder(X, Z, (y - y.mean()) / scale, dv)
     fitted = Fitted(products, scale)
     table = _table(fitted, terms, columns, [subject, stimulus], random, len(data) - int(have.sum()), level)
     modes = fitted.modes()
     table.attrs["checks"] = _normality(y / scale - X @ fitted.beta - Z @ modes, modes[group == 0])
     return table
+
+
+def _check_remainder(X: np.ndarray, Z: np.ndarray, y: np.ndarray, dv: str) -> None:
+    """AnalysisError where coefficients and intercepts leave less than 1e-5 of the standard deviation of `y`."""
+    both = np.hstack([X, Z])
+    projected = both.T @ y
+    explained = float(projected @ np.linalg.lstsq(both.T @ both, projected, rcond=1e-10)[0])
+    if float(y @ y) - explained <= 1e-10 * float(y @ y):
+        raise AnalysisError(
+            f"Participants, stimuli and factors together explain {dv!r} without a remainder, so there is no residual "
+            "variance to test against; a mixed model needs several rows of every participant and stimulus."
+        )
 
 
 def _normality(residuals: np.ndarray, intercepts: np.ndarray) -> dict[str, float]:

@@ -10,8 +10,11 @@ import pandas as pd
 from scipy import special
 
 from analysis.errors import AnalysisError, check_share
-from analysis.statistics.cells import Levels
+from analysis.statistics.cells import Levels, names_of
+from analysis.statistics.columns import require_other_names
 from analysis.statistics.comparisons import pairwise
+
+COLUMNS = ("lower_bound", "upper_bound", "t_lower", "p_lower", "t_upper", "p_upper", "equivalent")
 
 
 def equivalence(
@@ -41,6 +44,7 @@ def equivalence(
     """
     lower, upper = _bounds(bound)
     check_share("alpha", alpha, 0.05)
+    require_other_names(names_of(by), COLUMNS)
     pairs = pairwise(
         data, dv, subject, within, between, factors=factors, by=by, model=model, adjust="none", levels=levels
     )

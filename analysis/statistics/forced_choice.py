@@ -10,7 +10,13 @@ from scipy import special, stats
 
 from analysis.errors import AnalysisError, check_share
 from analysis.statistics.cells import names_of
-from analysis.statistics.columns import numbers, require
+from analysis.statistics.columns import numbers, require, require_other_names
+
+PROPORTIONS = ("k", "n", "proportion", "chance", "p", "exact_low", "exact_high", "wilson_low", "wilson_high")
+SENSITIVITIES = (
+    "hits", "misses", "false_alarms", "correct_rejections", "hit_rate", "false_alarm_rate", "d_prime", "se",
+    "criterion",
+)  # fmt: skip
 
 
 def proportions(
@@ -35,6 +41,7 @@ def proportions(
     check_share("chance", chance, 0.5)
     by = names_of(by)
     require(data, [successes, *([trials] if trials else []), *by])
+    require_other_names(by, PROPORTIONS)
     counts = pd.DataFrame({name: data[name] for name in by})
     counts["k"] = numbers(data, successes)
     counts["n"] = numbers(data, trials) if trials else 1.0
@@ -49,19 +56,7 @@ def proportions(
         exact = test.proportion_ci(level, "exact")
         wilson = test.proportion_ci(level, "wilson")
         rows.append((*names, k, n, k / n, chance, test.pvalue, *exact, *wilson))
-    columns = [
-        *by,
-        "k",
-        "n",
-        "proportion",
-        "chance",
-        "p",
-        "exact_low",
-        "exact_high",
-        "wilson_low",
-        "wilson_high",
-    ]
-    return pd.DataFrame(rows, columns=columns)
+    return pd.DataFrame(rows, columns=[*by, *PROPORTIONS])
 
 
 def d_prime(data: pd.DataFrame, signal: str, answer: str, *, by: str | Sequence[str] = ()) -> pd.DataFrame:
@@ -76,14 +71,15 @@ def d_prime(data: pd.DataFrame, signal: str, answer: str, *, by: str | Sequence[
     """
     by = names_of(by)
     require(data, [signal, answer, *by])
+    require_other_names(by, SENSITIVITIES)
     table = pd.DataFrame({name: data[name] for name in by})
-    table["signal"], table["answer"] = numbers(data, signal), numbers(data, answer)
-    if not table[["signal", "answer"]].isin([0, 1]).all(axis=None):
+    table["_signal"], table["_answer"] = numbers(data, signal), numbers(data, answer)
+    if not table[["_signal", "_answer"]].isin([0, 1]).all(axis=None):
         raise AnalysisError(f"{signal!r} and {answer!r} must hold 0 and 1 only.")
     grouped = table.groupby(list(by), sort=True, observed=True) if by else [((), table)]
     rows = []
     for names, part in grouped:
-        yes, was = part["answer"] == 1, part["signal"] == 1
+        yes, was = part["_answer"] == 1, part["_signal"] == 1
         hits, misses = int((yes & was).sum()), int((~yes & was).sum())
         alarms, rejections = int((yes & ~was).sum()), int((~yes & ~was).sum())
         if hits + misses == 0 or alarms + rejections == 0:
@@ -97,19 +93,7 @@ def d_prime(data: pd.DataFrame, signal: str, answer: str, *, by: str | Sequence[
             (alarms + rejections + 1) * density[1]
         )
         rows.append((*names, hits, misses, alarms, rejections, h, f, zh - zf, variance**0.5, -(zh + zf) / 2))
-    columns = [
-        *by,
-        "hits",
-        "misses",
-        "false_alarms",
-        "correct_rejections",
-        "hit_rate",
-        "false_alarm_rate",
-        "d_prime",
-        "se",
-        "criterion",
-    ]
-    return pd.DataFrame(rows, columns=columns)
+    return pd.DataFrame(rows, columns=[*by, *SENSITIVITIES])
 
 
 def d_prime_forced_choice(proportion_correct: float | np.ndarray, alternatives: int = 2) -> np.ndarray:

@@ -16,9 +16,11 @@ from scipy import stats
 
 from analysis.errors import AnalysisError, check_share
 from analysis.statistics.cells import CellMeans, Levels, cell_means, names_of
+from analysis.statistics.columns import require_other_names
 from analysis.statistics.contrasts import kronecker, subsets, sum_to_zero, within_contrasts
 from analysis.statistics.linear_fit import LinearFit, fit
 
+COLUMNS = ("emmean", "se", "df", "ci_low", "ci_high")
 MODELS = ("multivariate", "univariate", "pooled")
 
 
@@ -161,6 +163,7 @@ def emmeans(
     """
     check_model(model)
     check_share("level", level, 0.95)
+    require_other_names(names_of(factors), COLUMNS)
     means = cell_means(data, dv, subject, within, between, levels)
     return emmeans_of(marginal_means(means, names_of(factors)), model, level)
 

@@ -11,9 +11,11 @@ from scipy import optimize, special
 
 from analysis.errors import AnalysisError
 from analysis.statistics.cells import names_of
-from analysis.statistics.columns import numbers, require
+from analysis.statistics.columns import numbers, require, require_other_names
 
 SHAPES = ("logistic", "normal")
+COLUMNS = ("n", "intercept", "slope", "threshold", "threshold_se", "jnd", "lapse", "deviance", "df")
+BOOTSTRAP_COLUMNS = ("threshold_low", "threshold_high", "slope_low", "slope_high")
 
 
 @dataclass(frozen=True)
@@ -65,16 +67,17 @@ def psychometric(
     if bootstrap < 0:
         raise AnalysisError(f"bootstrap is a number of samples, 0 for no limits, not {bootstrap!r}.")
     require(data, [level, successes, *([trials] if trials else []), *by])
+    require_other_names(by, (*COLUMNS, *BOOTSTRAP_COLUMNS))
     table = pd.DataFrame({name: data[name] for name in by})
-    table["x"], table["k"] = numbers(data, level), numbers(data, successes)
-    table["n"] = numbers(data, trials) if trials else 1.0
+    table["_x"], table["_k"] = numbers(data, level), numbers(data, successes)
+    table["_n"] = numbers(data, trials) if trials else 1.0
     table = table.dropna()
-    if ((table["k"] < 0) | (table["k"] > table["n"])).any():
+    if ((table["_k"] < 0) | (table["_k"] > table["_n"])).any():
         raise AnalysisError(f"{successes!r} must lie between 0 and the number of trials.")
     rows, notes = [], []
     for names, part in table.groupby(list(by), sort=True, observed=True) if by else [((), table)]:
-        counts = part.groupby("x", sort=True)[["k", "n"]].sum()
-        x, k, n = counts.index.to_numpy(float), counts["k"].to_numpy(float), counts["n"].to_numpy(float)
+        counts = part.groupby("_x", sort=True)[["_k", "_n"]].sum()
+        x, k, n = counts.index.to_numpy(float), counts["_k"].to_numpy(float), counts["_n"].to_numpy(float)
         row = dict(zip(by, names, strict=True)) | {"n": int(n.sum())}
         if not _determined(x, k, n):
             who = " × ".join(map(str, names)) or "the data"
@@ -87,9 +90,7 @@ def psychometric(
             | _described(fitted, x, k, n, shape, lapse)
             | _bootstrapped(fitted, x, n, shape, guess, lapse, bootstrap, seed)
         )
-    columns = [*by, "n", "intercept", "slope", "threshold", "threshold_se", "jnd", "lapse", "deviance", "df"]
-    if bootstrap:
-        columns += ["threshold_low", "threshold_high", "slope_low", "slope_high"]
+    columns = [*by, *COLUMNS, *(BOOTSTRAP_COLUMNS if bootstrap else ())]
     result = pd.DataFrame(rows).reindex(columns=columns)
     result.attrs["notes"] = notes
     return result

@@ -10,8 +10,11 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from analysis.statistics.cells import CellMeans, Levels, cell_means
+from analysis.statistics.cells import CellMeans, Levels, cell_means, names_of
+from analysis.statistics.columns import require_other_names
 from analysis.statistics.linear_fit import fit
+
+COLUMNS = ("scope", "n", "mean", "sd", "w", "p")
 
 
 def normality(
@@ -30,6 +33,7 @@ def normality(
     and `attrs["notes"]` names those cells. Residuals are those of the multivariate linear model:
     each participant's cell mean minus the mean of the participant's group in that cell.
     """
+    require_other_names((*names_of(within), *names_of(between)), COLUMNS)
     return normality_of_cells(cell_means(data, dv, subject, within, between, levels))
 
 

@@ -19,7 +19,7 @@ def one_sample(values: np.ndarray, against: float) -> dict[str, Any]:
         raise AnalysisError(f"A t test needs at least 2 participants; there is {len(values)}.")
     flat = _flat(values)
     test = from_moments("one-sample", values.mean(), 0.0 if flat else values.std(ddof=1), len(values), against)
-    return {**test, **shapiro(values), **_wilcoxon(values - against)}
+    return {**test, **shapiro(values), **_wilcoxon(values - against, values)}
 
 
 def paired_test(x: np.ndarray, y: np.ndarray) -> dict[str, Any]:
@@ -27,7 +27,7 @@ def paired_test(x: np.ndarray, y: np.ndarray) -> dict[str, Any]:
     flat = float(np.sum((difference - difference.mean()) ** 2)) <= 1e-26 * float(np.sum(x**2) + np.sum(y**2))
     sd = 0.0 if flat else difference.std(ddof=1)
     test = from_moments("paired", difference.mean(), sd, len(difference), 0.0)
-    return {**test, "against": math.nan, **shapiro(difference), **_wilcoxon(difference)}
+    return {**test, "against": math.nan, **shapiro(difference), **_wilcoxon(difference, np.concatenate([x, y]))}
 
 
 def from_moments(test: str, mean: float, sd: float, n: int, against: float) -> dict[str, Any]:
@@ -60,23 +60,21 @@ def from_moments(test: str, mean: float, sd: float, n: int, against: float) -> d
 
 
 def independent_tests(x: np.ndarray, y: np.ndarray) -> list[dict[str, Any]]:
+    """Student's test and Welch's; the latter only of groups of two and more, as each needs a variance of its own."""
     n, m = len(x), len(y)
     estimate = x.mean() - y.mean()
     head = {"n": n + m, "mean": np.nan, "estimate": estimate}
-    if n < 2 or m < 2 or (_flat(x) and _flat(y)):
+    if _flat(x) and _flat(y):
         return [{"test": "independent", **head}]
-    vx, vy = x.var(ddof=1), y.var(ddof=1)
+    vx, vy = (values.var(ddof=1) if len(values) > 1 else 0.0 for values in (x, y))
     pooled = math.sqrt(((n - 1) * vx + (m - 1) * vy) / (n + m - 2))
     rank = stats.mannwhitneyu(x, y, use_continuity=True, method="asymptotic")
+    tests = [("independent", pooled * math.sqrt(1 / n + 1 / m), float(n + m - 2))]
+    if min(n, m) > 1:
+        df = (vx / n + vy / m) ** 2 / ((vx / n) ** 2 / (n - 1) + (vy / m) ** 2 / (m - 1))
+        tests.append(("Welch", math.sqrt(vx / n + vy / m), df))
     rows = []
-    for test, se, df in (
-        ("independent", pooled * math.sqrt(1 / n + 1 / m), float(n + m - 2)),
-        (
-            "Welch",
-            math.sqrt(vx / n + vy / m),
-            (vx / n + vy / m) ** 2 / ((vx / n) ** 2 / (n - 1) + (vy / m) ** 2 / (m - 1)),
-        ),
-    ):
+    for test, se, df in tests:
         t, half = estimate / se, stats.t.ppf(0.975, df) * se
         row = {
             "test": test,
@@ -120,11 +118,12 @@ def shapiro(values: np.ndarray) -> dict[str, float]:
     return {"shapiro_w": float(w), "shapiro_p": float(p)}
 
 
-def _wilcoxon(differences: np.ndarray) -> dict[str, float]:
-    """Signed ranks: R's V (sum of the positive ranks) and p; ties are decided after rounding to 12 decimals."""
-    rounded = np.round(differences, 12)
-    if not np.any(rounded):
-        rounded = differences
+def _wilcoxon(differences: np.ndarray, values: np.ndarray) -> dict[str, float]:
+    """Signed ranks: R's V (sum of the positive ranks) and p; differences are tied that agree to twelve figures
+    of the largest of the `values` they were made of, as equal ones may differ in their last bit.
+    """
+    largest = float(np.abs(values).max())
+    rounded = np.round(differences, 12 - math.floor(math.log10(largest))) if largest > 0 else differences
     if not np.any(rounded):
         return {}
 

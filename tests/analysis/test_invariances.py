@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis import anova, pairwise
+from analysis import anova, assumptions, pairwise, t_tests
 
 TESTS = [
     "df1",
@@ -109,6 +109,18 @@ def test_sums_of_squares_of_a_balanced_design_add_up(seed: int) -> None:
     errors = result.drop_duplicates("ss_error")["ss_error"].sum()
     total = float(((data["y"] - data["y"].mean()) ** 2).sum())
     assert result["ss"].sum() + errors == pytest.approx(total, rel=1e-9)
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e9])
+def test_ranks_and_slopes_have_no_unit(scale: float) -> None:
+    data = experiment(5).assign(y=lambda d: d["y"].round(2) + 5, start=np.arange(66) % 7 * 10.0 + 80)
+    data = pd.concat([data, data.assign(y=data["y"].to_numpy()[::-1], start=data["start"].to_numpy()[::-1])])
+    other = data.assign(y=data["y"] * scale, start=data["start"] * scale)
+    ranks = [t_tests(d, "y", "who", paired="actor")[["rank_statistic", "rank_p"]] for d in (data, other)]
+    pd.testing.assert_frame_equal(*ranks)
+    slopes = [assumptions(d, "y", "who", ["actor", "speed"], start="start").iloc[-1] for d in (data, other)]
+    assert slopes[0]["check"] == "anchoring"
+    assert slopes[1]["statistic"] == pytest.approx(slopes[0]["statistic"], rel=1e-9)
 
 
 def test_two_levels_are_a_paired_t_test() -> None:

@@ -16,6 +16,7 @@ from analysis import (
     AnalysisWarning,
     anova,
     art_anova,
+    d_prime,
     emmeans,
     equivalence,
     mixed_model,
@@ -237,3 +238,72 @@ def test_levels_without_a_value_to_test_against_are_named_and_not_tested() -> No
 def test_a_value_to_test_against_that_is_no_number_is_refused() -> None:
     with pytest.raises(AnalysisError, match="finite numbers"):
         t_tests(small(), "score", "id", each="speed", against={"slow": 0.0, "fast": math.nan})
+
+
+def test_a_factor_called_as_a_column_of_the_result_is_refused_instead_of_overwritten() -> None:
+    data = small().assign(right=1, was=[0, 1] * 12)
+    named = {name: data.rename(columns={"speed": name}) for name in ("df", "p", "mean", "n", "hits", "upper_bound")}
+    for name, computed in {
+        "df": lambda d: emmeans(d, "score", "id", ["df", "cue"], factors="df"),
+        "p": lambda d: pairwise(d, "score", "id", ["p", "cue"], factors="cue", by="p"),
+        "upper_bound": lambda d: equivalence(
+            d, "score", "id", ["upper_bound", "cue"], factors="cue", by="upper_bound", bound=1
+        ),
+        "mean": lambda d: normality(d, "score", "id", "mean"),
+        "n": lambda d: proportions(d, "right", by="n"),
+        "hits": lambda d: d_prime(d, "was", "right", by="hits"),
+    }.items():
+        with pytest.raises(AnalysisError, match=f"The result has a column '{name}' of its own; rename the factor"):
+            computed(named[name])
+
+
+@pytest.mark.parametrize("name", ["x", "k", "n_"])
+def test_any_other_name_of_a_column_keeps_its_levels(name: str) -> None:
+    data = pd.DataFrame({"level": [1, 2, 3, 4] * 2, "yes": [1, 3, 6, 9] * 2, "of": 10, name: ["a"] * 4 + ["b"] * 4})
+    assert psychometric(data, "level", "yes", "of", by=name)[name].to_list() == ["a", "b"]
+
+
+@pytest.mark.parametrize("test", [anova, art_anova])
+def test_a_factor_with_a_colon_would_be_taken_for_an_interaction(test: Any) -> None:
+    with pytest.raises(AnalysisError, match="'speed:1': a colon joins the factors"):
+        test(small().rename(columns={"speed": "speed:1"}), "score", "id", ["speed:1", "cue"])
+
+
+def test_columns_without_names_and_names_without_one_column() -> None:
+    data = small()
+    numbered = data.set_axis(range(len(data.columns)), axis=1)
+    with pytest.raises(AnalysisError, match=r"named by text.*data\.columns\.map\(str\)"):
+        anova(numbered, 4, 0, 1)  # type: ignore[arg-type]
+    with pytest.raises(AnalysisError, match="several columns called 'cue'"):
+        anova(pd.concat([data, data[["cue"]]], axis=1), "score", "id", ["speed", "cue"])
+
+
+def test_times_are_not_taken_for_numbers() -> None:
+    data = small()
+    times = data.assign(score=pd.to_timedelta(data["score"].abs(), unit="s"))
+    with pytest.raises(AnalysisError, match=r"'score' must hold numbers.*total_seconds"):
+        run(times)
+    seconds = times.assign(score=times["score"].dt.total_seconds())
+    np.testing.assert_allclose(run(seconds)["F"], run(data.assign(score=data["score"].abs()))["F"], rtol=1e-6)
+
+
+def test_a_blank_label_is_a_missing_one() -> None:
+    data = small()
+    data.loc[[2, 5], "speed"] = "  "
+    with pytest.raises(AnalysisError, match=r"'speed' is empty in row 3 \(2 such"):
+        run(data)
+
+
+def test_long_numbers_of_participants_read_as_floats_stay_apart() -> None:
+    data = small()
+    known = run(data)
+    numbered = data.assign(id=data["id"].str[1:].astype(int) + 20261124123456.0)
+    pd.testing.assert_frame_equal(run(numbered), known)
+    assert run(numbered).attrs["n"] == 6
+
+
+def test_a_mixed_model_without_a_remainder_is_refused() -> None:
+    data = small()
+    exact = data.assign(score=data["id"].str[1:].astype(int) * 0.3 + (data["cue"] == "valid") * 0.7 + 5)
+    with pytest.raises(AnalysisError, match="explain 'score' without a remainder"):
+        mixed_model(exact, "score", "id", "cue", "speed")

@@ -116,3 +116,13 @@ def test_shapiro_wilk_on_residuals_and_in_every_cell(name: str) -> None:
         assert row["mean"] == pytest.approx(wanted["mean"], rel=1e-8)
         if wanted["shapiro_p"] is not None:
             assert (row["w"], row["p"]) == pytest.approx((wanted["shapiro_W"], wanted["shapiro_p"]), abs=1e-6)
+
+
+def test_a_group_of_one_is_compared_by_the_variance_of_the_other() -> None:
+    """R: t.test(c(3, 5, 4, 8), 10, var.equal = TRUE) is t(3) = (5 - 10) / (sd sqrt(1 + 1/4)); sd² = 14 / 3."""
+    data = pd.DataFrame({"who": list("abcde"), "group": ["many"] * 4 + ["one"], "y": [3.0, 5, 4, 8, 10]})
+    result = t_tests(data, "y", "who", independent="group")
+    assert result["test"].to_list() == ["independent"]  # Welch's needs a variance of each group
+    row = result.iloc[0]
+    assert (row["t"], row["df"]) == (pytest.approx(-5 / (14 / 3 * 1.25) ** 0.5, rel=1e-12), 3)
+    assert result.attrs["notes"] == []
