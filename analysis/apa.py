@@ -35,7 +35,9 @@ def together(*values: float, significant: int = 3) -> list[str]:
 
 
 def limits(low: float, high: float) -> str:
-    """An interval by its limits: [−0.0391, 0.0415]."""
+    """An interval by its limits: [−0.0391, 0.0415]; an en dash where there is none."""
+    if not (math.isfinite(low) or math.isfinite(high)):
+        return "–"
     return f"[{', '.join(together(low, high))}]"
 
 
@@ -44,6 +46,11 @@ def degrees(df: float) -> str:
     if not math.isfinite(df):
         return "–"
     return f"{df:.0f}" if abs(df - round(df)) < 1e-9 else figures(df)
+
+
+def both_degrees(df1: float, df2: float) -> str:
+    """The two degrees of freedom of an F: '1.80, 36.2'; one dash for none."""
+    return f"{degrees(df1)}, {degrees(df2)}" if math.isfinite(df1) else "–"
 
 
 def p_value(p: float) -> str:
@@ -57,6 +64,21 @@ def share(value: float, decimals: int = 2) -> str:
     """A number that cannot exceed one, without its leading zero: .72."""
     text = number(value, decimals)
     return text.replace("0.", ".", 1) if text.startswith(("0.", MINUS + "0.")) else text
+
+
+def mid_sentence(label: str) -> str:
+    """A measure's label inside a sentence: 'Walk ratio' as 'walk ratio', 'RT' as it is."""
+    return label if label[1:2].isupper() else label[:1].lower() + label[1:]
+
+
+def follows_numbers(unit: str) -> bool:
+    """Whether a measure has a unit to write after its values; the range of a rating scale ('0-4') is none."""
+    return unit != "" and not unit[0].isdigit()
+
+
+def with_unit(value: str, unit: str) -> str:
+    """A value with its unit, '0.5 s', if it has one that follows numbers."""
+    return f"{value} {unit}" if follows_numbers(unit) else value
 
 
 def anova_sentence(row: Mapping[str, Any]) -> str:

@@ -84,6 +84,7 @@ def psychometric_tests(used: pd.DataFrame, plan: AnalysisPlan, asked: Psychometr
     facts = {
         f"{row['level']}|{k}": row[k] for row in pooled.to_dict("records") for k in ("intercept", "slope", "lapse")
     }
+    table["n"] = table["n"].astype("Int64")  # whole, though rows of effects have none
     more = fits.astype({"level": str})
     return FurtherTest("psychometric", table, more, facts, tuple(dict.fromkeys(notes)))
 
@@ -166,6 +167,7 @@ def d_prime_sentence(row: dict[str, Any]) -> str:
 
 def threshold_sentence(row: dict[str, Any]) -> str:
     """'threshold 4.31, 95 % CI [3.9, 4.7], just noticeable difference 1.2 (n = 12)'."""
-    limits = f", 95 % CI {apa.limits(row['ci_low'], row['ci_high'])}"
+    mean, low, high = apa.together(row["mean"], row["ci_low"], row["ci_high"])
+    limits = f", 95 % CI [{low}, {high}]"
     jnd = "" if math.isnan(row["jnd"]) else f", just noticeable difference {apa.figures(row['jnd'])}"
-    return f"threshold {apa.figures(row['mean'])}{'' if math.isnan(row['ci_low']) else limits}{jnd} (n = {row['n']})"
+    return f"threshold {mean}{'' if math.isnan(row['ci_low']) else limits}{jnd} (n = {row['n']})"

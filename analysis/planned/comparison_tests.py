@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import pandas as pd
 
 from analysis import apa
-from analysis.planned.further_test import FurtherTest
+from analysis.planned.further_test import FurtherTest, worth_saying
 from analysis.planned.plan import AnalysisPlan
 from analysis.recorded.exclusions import selected
 from analysis.statistics.comparisons import pairwise
@@ -31,7 +32,7 @@ def comparison_tests(used: pd.DataFrame, plan: AnalysisPlan) -> FurtherTest:
         parts.append(table.assign(factor=asked.factor or "", each=asked.each or "", where=asked.where or "",
                                   reference=asked.label if asked.kind == "against" else ""))  # fmt: skip
     table = _one_table(parts, ["factor", "each", "where", "reference"], _sentence)
-    return FurtherTest("comparisons", table, notes=_worth_saying(notes))
+    return FurtherTest("comparisons", table, notes=worth_saying(notes))
 
 
 def _one_table(parts: list[pd.DataFrame], first: list[str], sentence: Callable[[dict[str, Any]], str]) -> pd.DataFrame:
@@ -49,11 +50,6 @@ def _sentence(row: dict[str, Any]) -> str:
     return f"{where}{what} = {apa.figures(row['estimate'])}, {welch}{apa.t_sentence(row)}"
 
 
-def _worth_saying(notes: list[str]) -> tuple[str, ...]:
-    """Notes once each, without those on averaging over trials, which every test does."""
-    return tuple(dict.fromkeys(note for note in notes if "were averaged" not in note))
-
-
 def pair_tests(used: pd.DataFrame, plan: AnalysisPlan) -> FurtherTest:
     """Planned pairs of marginal means and simple effects: factors, by, level, the columns of `pairwise`, sentence."""
     parts: list[pd.DataFrame] = []
@@ -69,10 +65,15 @@ def pair_tests(used: pd.DataFrame, plan: AnalysisPlan) -> FurtherTest:
         table = table.drop(columns=list(asked.by)).assign(level=level)
         parts.append(table.assign(factors=" × ".join(asked.factors), by=" × ".join(asked.by), adjust=asked.adjust))
     table = _one_table(parts, ["factors", "by", "level", "adjust"], _pair_sentence)
-    return FurtherTest("pairs", table, notes=_worth_saying(notes))
+    return FurtherTest("pairs", table, notes=worth_saying(notes))
 
 
 def _pair_sentence(row: dict[str, Any]) -> str:
-    where = f"{row['by']} {row['level']}: " if row["by"] else ""
-    test = apa.t_sentence({**row, "d": row["d_av"]})
-    return f"{where}{row['a']} − {row['b']} = {apa.figures(row['estimate'])}, {test}"
+    inside = zip(row["by"].split(" × "), row["level"].split(" × "), strict=False)
+    where = ", ".join(f"{name} {level}" for name, level in inside) + ": " if row["by"] else ""
+    pair = f"{where}{row['a']} − {row['b']} = {apa.figures(row['estimate'])}"
+    test = apa.t_sentence({**row, "d": math.nan})
+    if not math.isfinite(row["t"]):
+        return f"{pair}, {test}"
+    adjusted = "" if row["adjust"] == "none" else f" ({row['adjust'].capitalize()})"
+    return f"{pair}, {test}{adjusted}, d_av = {apa.number(row['d_av'])}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import pandas as pd
@@ -16,3 +17,8 @@ class FurtherTest:
     more: pd.DataFrame = field(default_factory=pd.DataFrame)  # diagnostics, contrasts, participants
     facts: dict[str, float] = field(default_factory=dict)  # of the fit and its checks
     notes: tuple[str, ...] = ()
+
+
+def worth_saying(notes: Iterable[str]) -> tuple[str, ...]:
+    """Notes once each, without those on averaging over trials, which every test does."""
+    return tuple(dict.fromkeys(note for note in notes if "were averaged" not in note))

@@ -13,7 +13,7 @@ from analysis import apa
 from analysis.errors import AnalysisError
 from analysis.planned.choice_tests import d_prime_tests, proportion_tests, psychometric_tests
 from analysis.planned.comparison_tests import comparison_tests, pair_tests
-from analysis.planned.further_test import FurtherTest
+from analysis.planned.further_test import FurtherTest, worth_saying
 from analysis.planned.plan import AnalysisPlan
 from analysis.planned.plan_parts import EquivalencePlan, MixedModelPlan, RankTransformPlan, RegressionPlan
 from analysis.planned.results import ALPHA
@@ -58,12 +58,13 @@ def equivalence_tests(used: pd.DataFrame, plan: AnalysisPlan) -> FurtherTest:
 
     Shapiro-Wilk is of participants' differences; nan between groups.
     """
-    parts = []
+    parts, notes = [], []
     for asked in plan.equivalence:
         table = equivalence(
             used, plan.measure, "participant", plan.within, plan.between, factors=asked.factor, bound=asked.bound,
             by=(asked.by,) if asked.by else (), model=plan.model, levels=_levels(plan),
         )  # fmt: skip
+        notes += table.attrs["notes"]
         table = table.rename(columns={asked.by: "level"}) if asked.by else table.assign(level="")
         table = pd.concat([table, _normality_of_differences(used, plan, asked, table)], axis=1)
         parts.append(table.assign(factor=asked.factor, by=asked.by or ""))
@@ -71,7 +72,7 @@ def equivalence_tests(used: pd.DataFrame, plan: AnalysisPlan) -> FurtherTest:
     first = ["factor", "by", "level"]
     result = result[[*first, *(name for name in result if name not in first)]]
     result["sentence"] = [apa.equivalence_sentence(row) for row in result.to_dict("records")]
-    return FurtherTest("equivalence", result)
+    return FurtherTest("equivalence", result, notes=worth_saying(notes))
 
 
 def _normality_of_differences(
@@ -104,7 +105,7 @@ def regression_of_levels(used: pd.DataFrame, plan: AnalysisPlan, asked: Regressi
         if gaps:
             raise AnalysisError(f"the plan gives no {name} of {', '.join(gaps)}.")
     table = regression(cases, plan.measure, list(asked.on))
-    fit, notes = table.attrs["fit"], table.attrs["notes"]
+    fit, notes = table.attrs["fit"], [*worth_saying(means.notes), *table.attrs["notes"]]
     table["sentence"] = [
         apa.regression_sentence(fit) if row["term"] == "(intercept)" else apa.coefficient_sentence(row, fit["df2"])
         for row in table.to_dict("records")
@@ -140,7 +141,8 @@ def rank_transform(used: pd.DataFrame, plan: AnalysisPlan, asked: RankTransformP
     ]  # fmt: skip
     columns = ["effect", "a", "b", "estimate", "se", "df", "t", "p", "p_unadjusted"]
     contrasts = pd.concat(pairs, ignore_index=True)[columns] if pairs else pd.DataFrame(columns=columns)
-    return FurtherTest("aligned_rank_transform", table, contrasts, {"largest_other_F": largest})
+    notes = worth_saying(table.attrs["notes"])
+    return FurtherTest("aligned_rank_transform", table, contrasts, {"largest_other_F": largest}, notes)
 
 
 def mixed_model_of_trials(used: pd.DataFrame, plan: AnalysisPlan, asked: MixedModelPlan) -> FurtherTest:

@@ -15,6 +15,8 @@ from analysis.report.markup import Markup, element, table, text
 from analysis.report.values import (
     ADJUSTED,
     BF,
+    D_AV,
+    D_AV_IS,
     HOLM_LIMITS,
     Columns,
     D,
@@ -70,13 +72,17 @@ def pairs_section(test: FurtherTest, results: PlannedResults, plots: Plots) -> M
         columns: Columns = {
             **({"level": (by, text)} if by else {}),
             "a": ("a", text), "b": ("b", text), "estimate": ("a − b", unit), "limits": ("95 % limits", str_right),
-            "t": (T, apa.number), "df": ("df", degrees_cell), "p": (P, p_cell), "d_av": (D, apa.number),
+            "t": (T, apa.number), "df": ("df", degrees_cell), "p": (P, p_cell), "d_av": (D_AV, apa.number),
         }  # fmt: skip
         inside = f" inside every {by}" if by else ""
         head = element("h3", f"{factors}{inside} ({ADJUSTED.get(adjust, 'p uncorrected')})")
         parts += [head, _folded(shown, columns)]
     holm = HOLM_LIMITS if (data["adjust"] == "holm").any() else ""
-    notes = [f"Estimated marginal means, one family of comparisons in every level they stand in. {holm}", *test.notes]
+    notes = [
+        "Estimated marginal means, one family of comparisons in every level they stand in. "
+        f"{holm}{' ' if holm else ''}{D_AV_IS}",
+        *test.notes,
+    ]
     return section("Planned pairs", parts, notes, list(data["sentence"]))
 
 

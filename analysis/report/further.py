@@ -51,14 +51,15 @@ def _normality(what: str, w: float, p: float) -> str:
 def _equivalence(test: FurtherTest, results: PlannedResults, plots: Mapping[str, DrawnFigure]) -> Markup:
     data, (_, decimals) = test.table, unit_cell(results)
     shown = data.assign(
-        place=[f"{r['by']} {r['level']}" if r["by"] else "" for r in data.to_dict("records")],
+        place=[
+            f"{r['factor']} inside {r['by']} {r['level']}" if r["by"] else r["factor"] for r in data.to_dict("records")
+        ],
         limits=[interval(a, b, decimals + 1) for a, b in zip(data["ci_low"], data["ci_high"], strict=True)],
         bounds=[f"±{apa.figures(bound)}" for bound in data["upper_bound"]],
         verdict=["equivalent" if same else "not shown" for same in data["equivalent"]],
     )
     columns: Columns = {
-        "factor": ("factor", text),
-        **({"place": ("inside", text)} if data["by"].any() else {}),
+        "place": ("factor", text),
         "a": ("a", text), "b": ("b", text),
         "estimate": ("a − b", lambda value: apa.number(value, decimals + 1)),
         "limits": ("90 % limits", str_right), "bounds": ("bounds", str_right),
@@ -71,6 +72,7 @@ def _equivalence(test: FurtherTest, results: PlannedResults, plots: Mapping[str,
         "set in the study file before the data. A pair is equivalent when its 90 % limits lie inside the bounds; all "
         "levels are when all pairs are, so p is not corrected. Not shown does not mean different. Shapiro–Wilk: of "
         "participants' differences, which the tests take to be normal; none between groups.",
+        *test.notes,
     ]
     return section("Equivalence", [table(shown, columns, list(data["equivalent"]))], notes, list(data["sentence"]))
 
@@ -124,7 +126,8 @@ def _rank_transform(test: FurtherTest, results: PlannedResults, plots: Mapping[s
             if largest < 1e-3
             else f"Alignment: data aligned for one effect keep up to F = {apa.number(largest)} of another, because "
             "groups are unequal; read the table with care."
-        )
+        ),
+        *test.notes,
     ]
     sentences = [f"{apa.effect_name(row['effect'])}: {row['sentence']}" for row in data.to_dict("records")]
     return section("Aligned rank transform", parts, notes, sentences)

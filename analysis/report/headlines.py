@@ -6,7 +6,8 @@ import math
 
 import pandas as pd
 
-from analysis.apa import anova_sentence, effect_name, number, p_value, regression_sentence, t_sentence
+from analysis.apa import anova_sentence, effect_name, number, p_value, regression_sentence, t_sentence, with_unit
+from analysis.errors import listed
 from analysis.planned.further_test import FurtherTest
 from analysis.planned.results import ALPHA, PlannedResults, unit_decimals
 
@@ -42,10 +43,12 @@ def headlines(results: PlannedResults) -> list[str]:
                 found += _direction(results, row["effect"])
         rest = [r for r in results.anova.to_dict("records") if not r["p_gg"] < ALPHA and ":" not in r["effect"]]
         if rest:
-            tests = "; ".join(f"{r['effect']}, {anova_sentence(r)}" for r in rest)
-            found.append(f"No evidence of an effect of {tests}.")
-        interactions = results.anova["effect"].str.contains(":")
-        if interactions.any() and not any(":" in effect for effect in results.significant):
+            tests = "; ".join(f"{r['effect']}, {anova_sentence(r)}" for r in rest if math.isfinite(r["F"]))
+            found += [f"No evidence of an effect of {tests}."] if tests else []
+            flat = [r["effect"] for r in rest if not math.isfinite(r["F"])]
+            found += [f"{plan.label}: no test of {listed(flat)}, as there is no variance."] if flat else []
+        interactions = results.anova.loc[results.anova["effect"].str.contains(":"), "F"]
+        if interactions.notna().any() and not any(":" in effect for effect in results.significant):
             found.append("No interaction was significant.")
     decimals = unit_decimals(results)
     for row in results.ttests.to_dict("records"):
@@ -126,12 +129,13 @@ def _further(test: FurtherTest, results: PlannedResults) -> list[str]:
         found = []
         for (factor, by), part in table.groupby(["factor", "by"], sort=False):
             inside = f" inside every {by}" if by else ""
-            bound = f"±{part['upper_bound'].iloc[0]:g}" + (f" {plan.unit}" if plan.unit else "")
+            bound = with_unit(f"±{part['upper_bound'].iloc[0]:g}", plan.unit)
             same, worst = int(part["equivalent"].sum()), part["p"].max(skipna=False)
+            largest = f"largest {p_value(worst)}" if math.isfinite(worst) else "no p without variance"
             verdict = "all levels are equivalent" if same == len(part) else "equivalence of all levels is not shown"
             found.append(
-                f"{plan.label} over {factor}{inside}: {verdict} within {bound} ({same} of {len(part)} pairs, "
-                f"largest {p_value(worst)})."
+                f"{plan.label} over {factor}{inside}: {verdict} within {bound} "
+                f"({same} of {len(part)} pairs, {largest})."
             )
         return found
     if test.kind == "regression" and plan.regression is not None:
@@ -141,4 +145,5 @@ def _further(test: FurtherTest, results: PlannedResults) -> list[str]:
     rows = table[table["part"] == "effect"] if "part" in table else table
     key = "term" if "part" in table else "effect"
     low = [f"{effect_name(row[key])}, {row['sentence']}" for row in rows.to_dict("records") if row["p"] < ALPHA]
-    return [f"{plan.label}, {name}: {'; '.join(low) if low else 'no effect is significant'}."]
+    none = "no effect is significant" if rows["p"].notna().any() else "not testable: no variance"
+    return [f"{plan.label}, {name}: {'; '.join(low) if low else none}."]

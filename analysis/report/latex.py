@@ -19,24 +19,31 @@ WIDEST = 72
 """Characters of a row, beyond which its label is broken into lines, so that a page of 12 cm holds the table."""
 
 
+LONGEST = 42
+"""Rows of a table that a page holds; a longer one goes on over the next (longtable)."""
+
+
 def escaped(text: object) -> str:
     """Text that LaTeX prints as it is."""
     return "".join(_SPECIAL.get(character, character) for character in " ".join(str(text).split()))
 
 
 def latex_tables(results: PlannedResults) -> str:
-    r"""ANOVA, t tests, significant pairs, every further test as `table` environments; needs \usepackage{booktabs}."""
-    parts = ["% \\usepackage{booktabs}; written by gaitlab"]
+    r"""ANOVA, t tests, significant pairs, every further test as tables.
+
+    The first line says which packages they need: booktabs, and longtable where one is longer than a page.
+    """
+    parts: list[str] = []
     plan, decimals = results.plan, unit_decimals(results)
     if len(results.anova):
         rows = [
             [
-                apa.effect_name(r["effect"]), f"{apa.degrees(r['df1_gg'])}, {apa.degrees(r['df2_gg'])}",
+                apa.effect_name(r["effect"]), apa.both_degrees(r["df1_gg"], r["df2_gg"]),
                 apa.number(r["F"]), p_text(r["p_gg"]), _share(r["eta_p2"]),
             ]
             for r in results.anova.to_dict("records")
         ]  # fmt: skip
-        caption = f"Analysis of variance of {plan.label.lower()}, Greenhouse–Geisser corrected"
+        caption = f"Analysis of variance of {apa.mid_sentence(plan.label)}, Greenhouse–Geisser corrected"
         parts.append(_table(caption, ["Effect", "df", "$F$", "$p$", r"$\eta_p^2$"], rows))
     if len(results.ttests):
         rows = [
@@ -64,7 +71,8 @@ def latex_tables(results: PlannedResults) -> str:
         if (written := further_rows(test)) is not None:
             caption, head, body = written
             parts.append(_table(f"{plan.label}: {caption[:1].lower()}{caption[1:]}", head, body))
-    return "\n\n".join(parts) + "\n"
+    packages = "booktabs,longtable" if any("longtable" in part for part in parts) else "booktabs"
+    return "\n\n".join([f"% \\usepackage{{{packages}}}; written by gaitlab", *parts]) + "\n"
 
 
 def _share(value: float) -> str:
@@ -78,6 +86,13 @@ def _table(caption: str, head: Sequence[str], rows: Sequence[Sequence[object]]) 
         label = r"p{0.27\linewidth}"
         body = [[rf"\raggedright {first}", *others] for first, *others in body]
     columns = label + "r" * (len(head) - 1)
+    if len(rows) > LONGEST:
+        return "\n".join([
+            r"\begingroup\small\setlength{\tabcolsep}{4pt}", rf"\begin{{longtable}}{{@{{}}{columns}@{{}}}}",
+            rf"\caption{{{escaped(caption)}}}\\", r"\toprule", " & ".join(head) + r" \\", r"\midrule", r"\endfirsthead",
+            r"\toprule", " & ".join(head) + r" \\", r"\midrule", r"\endhead", r"\bottomrule", r"\endfoot",
+            *(" & ".join(row) + r" \\" for row in body), r"\end{longtable}", r"\endgroup",
+        ])  # fmt: skip
     return "\n".join([
         r"\begin{table}", r"\centering\small\setlength{\tabcolsep}{4pt}", rf"\caption{{{escaped(caption)}}}",
         rf"\begin{{tabular}}{{@{{}}{columns}@{{}}}}", r"\toprule", " & ".join(head) + r" \\", r"\midrule",

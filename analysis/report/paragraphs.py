@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 
-from analysis.apa import degrees, number, p_value, share
+from analysis.apa import degrees, mid_sentence, number, p_value, share, with_unit
 from analysis.errors import listed
 from analysis.planned.plan import AnalysisPlan
 from analysis.planned.results import ALPHA, PlannedResults
 from analysis.recorded.answers import readable
+from analysis.report.values import ADJUSTED
+
+WAYS = {1: "one", 2: "two", 3: "three", 4: "four", 5: "five", 6: "six"}
 
 
 def simulated_sentence(results: PlannedResults) -> str:
@@ -55,7 +58,7 @@ def methods_paragraphs(results: PlannedResults) -> list[str]:
     words: list[str] = []
     for test in plan.t_tests:
         words.append(
-            f"For each {test.each}, participants' mean {plan.label.lower()}"
+            f"For each {test.each}, participants' mean {mid_sentence(plan.label)}"
             + (f" in trials with {test.where}" if test.where else "")
             + f" was compared with the {test.label} in a "
             "two-sided one-sample t test; these p values are not corrected for their number."
@@ -64,12 +67,12 @@ def methods_paragraphs(results: PlannedResults) -> list[str]:
     for same in plan.equivalence:
         inside = f" inside every level of {same.by}" if same.by else ""
         words.append(
-            f"Whether {plan.label.lower()} is the same at all levels of {same.factor}{inside} was tested with two "
-            f"one-sided tests of every pair, with bounds of ±{same.bound:g}{f' {plan.unit}' if plan.unit else ''}."
+            f"Whether {mid_sentence(plan.label)} is the same at all levels of {same.factor}{inside} was tested with "
+            f"two one-sided tests of every pair, with bounds of {with_unit(f'±{same.bound:g}', plan.unit)}."
         )
     if plan.regression is not None:
         words.append(
-            f"The mean {plan.label.lower()} of every {plan.regression.of} was regressed on "
+            f"The mean {mid_sentence(plan.label)} of every {plan.regression.of} was regressed on "
             f"{listed(plan.regression.on)} (ordinary least squares)."
         )
     if plan.rank_transform is not None:
@@ -97,12 +100,14 @@ def choice_methods(plan: AnalysisPlan) -> list[str]:
             "independent": f"compared between the groups of {test.factor} in Student's and Welch's t tests",
             "against": f"compared with the {test.label} of {test.against or 0.0:g} in a one-sample t test",
         }[test.kind]
-        words.append(f"Participants' mean {plan.label.lower()}{trials} was {how}{inside} (two-sided, uncorrected).")
+        words.append(
+            f"Participants' mean {mid_sentence(plan.label)}{trials} was {how}{inside} (two-sided, uncorrected)."
+        )
     for pairs in plan.pairs:
         inside = f" inside every {listed(pairs.by)}" if pairs.by else ""
         words.append(
             f"Planned comparisons of {listed(pairs.factors)}{inside} used estimated marginal means "
-            f"({pairs.model} model, {pairs.adjust})."
+            f"({pairs.model} model, {ADJUSTED.get(pairs.adjust, 'p uncorrected')})."
         )
     for share_of in plan.proportions:
         inside = f" in every {listed(share_of.each)}" if share_of.each else ""
@@ -133,9 +138,10 @@ def _anova_methods(results: PlannedResults) -> list[str]:
         if names:
             sizes = [f"{name} ({', '.join(plan.levels[name])})" for name in names]
             design.append(f"the {kind} factor{'s' if len(names) > 1 else ''} {listed(sizes)}")
+    factors = len(plan.within) + len(plan.between)
     words = [
         f"{plan.label} was averaged over the trials of each participant and cell and submitted to a "
-        f"{len(plan.within) + len(plan.between)}-way {'mixed ' if plan.within and plan.between else ''}"
+        f"{WAYS.get(factors, str(factors))}-way {'mixed ' if plan.within and plan.between else ''}"
         f"analysis of variance{n} with {' and '.join(design)}.",
         "Sums of squares are type III.",
     ]
@@ -164,6 +170,9 @@ def sphericity_sentence(results: PlannedResults) -> str:
         return ""
     low = tested[tested["mauchly_p"] < ALPHA]
     if not len(low):
+        if len(tested) == 1:
+            row = tested.iloc[0]
+            return f"Sphericity: Mauchly's test does not reject it for {row['effect']} ({p_value(row['mauchly_p'])})."
         return f"Sphericity: Mauchly's test rejects for none of the {len(tested)} testable effects."
     found = [f"{row.effect.replace(':', ' × ')} ({p_value(row.mauchly_p)})" for row in low.itertuples()]
     return (
@@ -184,15 +193,22 @@ def normality_sentence(results: PlannedResults) -> str:
         f"Normality: the residuals {verdict} (Shapiro–Wilk W = {first['w']:.3f}, {p_value(first['p'])}, n = "
         f"{int(first['n'])}). Of {tested} cells tested one by one, {low} "
         f"{'has' if low == 1 else 'have'} p < .05; "
-        f"about {max(1, round(tested * ALPHA))} would by chance alone."
+        f"{number(tested * ALPHA, 1)} would be expected by chance alone."
     )
 
 
 def other_checks(results: PlannedResults) -> list[str]:
     """Equal variances, outlying cells, learning and anchoring, a sentence each; all of it is in assumptions.csv."""
     table, found = results.assumptions, []
-    levene = table[table["check"] == "Levene (median)"]
-    if len(levene):
+    levene = table[(table["check"] == "Levene (median)") & table["p"].notna()]
+    if len(levene) == 1 and not results.plan.within:
+        row = levene.iloc[0]
+        found.append(
+            f"Equal variances of the groups: Levene's test (from the median) "
+            f"{'rejects' if row['p'] < ALPHA else 'does not reject'} them, "
+            f"F({degrees(row['df1'])}, {degrees(row['df2'])}) = {number(row['statistic'])}, {p_value(row['p'])}."
+        )
+    elif len(levene):
         low = levene[levene["p"] < ALPHA]
         found.append(
             f"Equal variances of the groups: Levene's test (from the median) has p < .05 in {len(low)} of "
@@ -205,12 +221,11 @@ def other_checks(results: PlannedResults) -> list[str]:
         if len(outliers)
         else "Outliers: no participant's cell mean lies more than 3 standard deviations from that of the group."
     )
-    unit = f" {results.plan.unit}" if results.plan.unit else ""
     for check, name in (("learning", "Learning"), ("anchoring", "Anchoring to the start value")):
         for row in table[(table["check"] == check) & table["p"].notna()].to_dict("records"):
             verdict = "found" if row["p"] < ALPHA else "not found"
             found.append(
-                f"{name}: {verdict}, {row['note']}{unit}, t({degrees(row['df2'])}) = "
+                f"{name}: {verdict}, {with_unit(row['note'], results.plan.unit)}, t({degrees(row['df2'])}) = "
                 f"{number(row['statistic'])}, {p_value(row['p'])}."
             )
     return found

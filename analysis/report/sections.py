@@ -13,6 +13,8 @@ from analysis.report import paragraphs
 from analysis.report.markup import Cell, Markup, bullets, element, join, table, text
 from analysis.report.values import (
     ADJUSTED,
+    D_AV,
+    D_AV_IS,
     HOLM_LIMITS,
     bayes_cell,
     check_plot,
@@ -21,6 +23,7 @@ from analysis.report.values import (
     interval,
     p_cell,
     share_cell,
+    share_interval,
     str_right,
     unit_cell,
 )
@@ -35,10 +38,8 @@ def anova_section(results: PlannedResults, plot: DrawnFigure | None = None) -> M
         return Markup("")
     shown = data.assign(
         effect=data["effect"].map(apa.effect_name),
-        df=[f"{apa.degrees(a)}, {apa.degrees(b)}" for a, b in zip(data["df1_gg"], data["df2_gg"], strict=True)],
-        limits=[
-            f"[{share_cell(a)}, {share_cell(b)}]" for a, b in zip(data["eta_p2_low"], data["eta_p2_high"], strict=True)
-        ],
+        df=[apa.both_degrees(a, b) for a, b in zip(data["df1_gg"], data["df2_gg"], strict=True)],
+        limits=[share_interval(a, b) for a, b in zip(data["eta_p2_low"], data["eta_p2_high"], strict=True)],
         uncorrected=[f"{a}, {b}" for a, b in zip(data["df1"], data["df2"], strict=True)],
         mauchly=[p_cell(p) for p in data["mauchly_p"]],
     )
@@ -56,7 +57,7 @@ def anova_section(results: PlannedResults, plot: DrawnFigure | None = None) -> M
         "mauchly": (element("span", "Mauchly ", element("i", "p")), str_right),
     }
     notes = [
-        f"Dependent variable: {results.plan.label.lower()}"
+        f"Dependent variable: {apa.mid_sentence(results.plan.label)}"
         + (f" ({results.plan.unit})" if results.plan.unit else "")
         + f"; n = {len(results.means.subjects) if results.means else 0}. Bold: p < .05. df and p are "
         "Greenhouse–Geisser "
@@ -108,7 +109,8 @@ def t_tests_section(results: PlannedResults, plots: Mapping[str, DrawnFigure]) -
             "shapiro_p": (element("span", "Shapiro–Wilk ", element("i", "p")), p_cell),
         }
         parts += [table(shown, columns, list(part["p"] < ALPHA)), check_plot(plots.get(f"t {factor}"))]
-    measured_in = f" Means and differences in {results.plan.unit}." if results.plan.unit else ""
+    of_measure = results.plan.unit
+    measured_in = f" Means and differences in {of_measure}." if apa.follows_numbers(of_measure) else ""
     parts.append(
         element(
             "p",
@@ -136,9 +138,8 @@ def posthoc_section(results: PlannedResults) -> Markup:
         parts.append(
             element(
                 "p",
-                f"p: {ADJUSTED.get(plan.adjust, 'unadjusted')}, over all pairs of one effect; {kind}{holm}d is the "
-                f"difference over the root mean of the two "
-                "variances between participants. All pairs, with standard errors and limits, are in "
+                f"p: {ADJUSTED.get(plan.adjust, 'unadjusted')}, over all pairs of one effect; {kind}{holm}{D_AV_IS} "
+                "All pairs, with standard errors and limits, are in "
                 "posthoc.csv.",
                 class_="note",
             )
@@ -158,7 +159,7 @@ def _family(effect: str, part: pd.DataFrame, results: PlannedResults) -> Markup:
         "t": (element("i", "t"), apa.number),
         "df": ("df", degrees_cell),
         "p": (element("i", "p"), p_cell),
-        "d_av": (element("i", "d"), apa.number),
+        "d_av": (D_AV, apa.number),
     }
     words = f"{len(low)} of {len(part)} pairs differ."
 

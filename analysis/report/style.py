@@ -32,6 +32,7 @@ th { font-weight: 600; color: var(--soft); border-bottom: 1.5px solid #b8c2cf; p
      vertical-align: bottom; }
 td { border-bottom: 1px solid var(--line); padding: .26rem .42rem; white-space: nowrap; }
 thead { border-top: 1.5px solid #b8c2cf; }
+td.left:first-child { white-space: normal; }
 .left { text-align: left; } .right { text-align: right; }
 tr.found td { font-weight: 600; }
 tbody tr:hover { background: var(--wash); }

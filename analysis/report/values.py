@@ -13,6 +13,8 @@ from analysis.report.markup import Cell, Markup, bullets, element, image, join
 Columns = dict[str, tuple[object, Cell]]
 D, F, P, T, BF = element("i", "d"), element("i", "F"), element("i", "p"), element("i", "t"), "BF₁₀"
 ADJUSTED = {"tukey": "Tukey", "bonferroni": "Bonferroni", "holm": "Holm"}
+D_AV = Markup("<i>d</i><sub>av</sub>")
+D_AV_IS = "d_av is the difference over the root mean of the two variances between participants."
 HOLM_LIMITS = "With Holm the limits are Bonferroni's, wider than its p."
 
 
@@ -28,6 +30,10 @@ def p_cell(value: float) -> str:
 
 def share_cell(value: float) -> str:
     return apa.share(value) if math.isfinite(value) else "–"
+
+
+def share_interval(low: float, high: float) -> str:
+    return f"[{share_cell(low)}, {share_cell(high)}]" if math.isfinite(high) else "–"
 
 
 def epsilon_cell(value: float) -> str:
@@ -49,6 +55,9 @@ def bayes_cell(value: float) -> str:
 
 
 def interval(low: float, high: float, decimals: int) -> str:
+    """An interval by its limits; an en dash where there is none."""
+    if not (math.isfinite(low) or math.isfinite(high)):
+        return "–"
     return f"[{apa.number(low, decimals)}, {apa.number(high, decimals)}]"
 
 

@@ -28,7 +28,8 @@ class Labels:
 def label(value: Any) -> str:
     """The text of a level: trimmed, and 80.0 written as 80; whole numbers keep all their digits."""
     if isinstance(value, (float, np.floating)):
-        return f"{value:.0f}" if abs(value) < 2**53 and value == int(value) else f"{value:.12g}"
+        number = float(value)
+        return f"{number:.0f}" if abs(number) < 2**53 and number.is_integer() else f"{number:.12g}"
     return str(value).strip()
 
 

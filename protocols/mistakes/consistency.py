@@ -13,6 +13,7 @@ from typing import Any
 from protocols.mistakes.mistake import Mistake, Place, no_such
 from protocols.mistakes.order_mistakes import order_mistakes
 from protocols.mistakes.planned_analysis import analysis_mistakes
+from protocols.mistakes.table_columns import taken_columns
 from protocols.orders.assignment import groups
 from protocols.orders.design import conditions
 from protocols.parts import Level
@@ -20,9 +21,6 @@ from protocols.setting import Given, lacking, references, setting_mistakes, unfi
 from protocols.stimulus import Walk
 from protocols.study import ChoiceQuestion, Study
 from protocols.viewing import PLACED, viewing_mistakes
-
-TAKEN_COLUMNS = frozenset({"study", "participant", "run", "trial", "block", "repetition"})
-"""Columns that every table of trials has."""
 
 OR_ASSIGNED = "; or name it in participants.assigned, and the program assigns it"
 
@@ -102,8 +100,9 @@ def _levels(study: Study) -> Iterator[Mistake]:
     trials = study.repetitions * math.prod(len(levels) for name, levels in study.factors.items() if name != placed)
     if trials > MOST_TRIALS:
         yield Mistake(("repetitions",), f"the design has {trials} trials; at most {MOST_TRIALS} fit a run")
+    taken = taken_columns(study)
     for factor, levels in study.factors.items():
-        if factor in TAKEN_COLUMNS:
+        if factor in taken:
             yield Mistake(("factors", factor), "is the name of a column of the tables; rename the factor", on_key=True)
         for i, level in enumerate(levels):
             if level in levels[:i] or str(level) in map(str, levels[:i]):
@@ -181,6 +180,8 @@ def _between(study: Study) -> Iterator[Mistake]:
     for factor, levels in study.participants.between.items():
         where: Place = ("participants", "between", factor)
         if factor in study.participants.assigned:
+            if factor in taken_columns(study):
+                yield Mistake(where, "is the name of a column of the tables; rename the factor", on_key=True)
             continue
         if factor not in choices:
             yield Mistake(where, no_such(factor, choices, "choice question") + OR_ASSIGNED, on_key=True)
@@ -191,7 +192,7 @@ def _between(study: Study) -> Iterator[Mistake]:
 
 
 def _questions(study: Study) -> Iterator[Mistake]:
-    taken: set[str] = {*study.factors, *TAKEN_COLUMNS}
+    taken: set[str] = {*study.factors, *taken_columns(study)}
     for i, question in enumerate(study.participants.questions):
         if question.id in taken:
             where: Place = ("participants", "questions", i, "id")

@@ -8,13 +8,11 @@ from protocols.gaze import REGIONS
 from protocols.mistakes.mistake import Mistake, Place, no_such
 from protocols.mistakes.planned_tests import Columns, anova_factor_mistakes, test_mistakes
 from protocols.mistakes.possible import Possible, Span, condition_mistakes
+from protocols.mistakes.table_columns import COUNTS, taken_columns
 from protocols.study import FurtherAnalysis, Level, Study
 
 GAZE_SHARE = "gaze_share"
 """The measure that any task gives when gaze is recorded: % of looking time on every region."""
-
-TABLE_COLUMNS = ("study", "participant", "run", "trial", "block", "repetition")
-"""Columns that every table of trials has."""
 
 
 def analysis_mistakes(study: Study) -> Iterator[Mistake]:
@@ -42,16 +40,10 @@ def analysis_mistakes(study: Study) -> Iterator[Mistake]:
 
 def columns_of(study: Study, plan: FurtherAnalysis | None = None) -> dict[str, Possible | None]:
     """Columns that a condition may name, to what they can hold; None where a study of this kind does not fill one."""
-    counts = ("response_time", "late_frames", "key_presses", "reversals")
     columns: dict[str, Possible | None] = dict.fromkeys(study.task.responses)
-    columns |= {**study.task.recorded, **dict.fromkeys(counts, Span())}
+    columns |= {**study.task.recorded, **dict.fromkeys(COUNTS, Span())}
     columns |= {name: tuple(levels) for name, levels in study.participants.between.items()}
     return columns | {name: tuple(levels) for name, levels in within_factors(study, plan).items()}
-
-
-def _columns(study: Study) -> tuple[str, ...]:
-    """Columns that the answer to a trial fills."""
-    return (*study.task.responses, "response_time")
 
 
 def within_factors(study: Study, plan: FurtherAnalysis | None = None) -> dict[str, list[Level]]:
@@ -67,7 +59,7 @@ def _conditions(text: str, where: Place, columns: Columns, both_ways: bool = Tru
 
 
 def _groups(study: Study) -> Iterator[Mistake]:
-    taken = {*study.factors, *(q.id for q in study.participants.questions), *_columns(study), *TABLE_COLUMNS}
+    taken = {*study.factors, *(q.id for q in study.participants.questions), *taken_columns(study)}
     for name, groups in study.analysis.groups.items():
         where: Place = ("analysis", "groups", name)
         if name in taken:

@@ -165,3 +165,16 @@ def test_a_table_may_go_on_inside_and_is_checked_there_too(tmp_path):
     assert said(tmp_path, "speed_editing") == ""
     inside = said(tmp_path, "speed_editing", ("0.88: 0.70, 1.06", "0.88: brisk, 1.06"))
     assert "source_speed.$direction.sped_up.$speed.0.88: 'brisk' is not a number" in inside
+
+
+@pytest.mark.parametrize("name", ["side", "correct", "views", "response_time", "excluded", "mean", "n"])
+def test_a_factor_called_as_a_recorded_column_would_lose_its_levels_and_is_refused(tmp_path, name):
+    """`side` (left or right) is recorded in every choice, over a factor of that name."""
+    says = said(tmp_path, "poulaine_reconstruction", ("factors:\n", f"factors:\n  {name}: [left, right]\n"))
+    assert f"factors.{name}: is the name of a column of the tables; rename the factor" in says
+
+
+def test_a_question_called_as_a_recorded_column_would_lose_its_answers_and_is_refused(tmp_path):
+    asked = "questions:\n    - {id: rating, kind: number, prompt: How often?, minimum: 0, maximum: 9}\n"
+    says = said(tmp_path, "fourier_naturalness", ("questions:\n", asked))
+    assert "rating is already the name of a question, factor or column" in says

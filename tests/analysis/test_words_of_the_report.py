@@ -1,0 +1,150 @@
+"""What the page, the headlines and the LaTeX tables say, where a reviewer would find a wrong word.
+
+A rating study whose observers all answer at the floor for two of three walks: values without variance.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+import shutil
+import subprocess
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analysis import AnalysisOutcome, AnalysisWarning, analyse, apa
+from analysis.planned.further_tests import planned_tests
+from analysis.planned.plan import plan_of
+from analysis.report.latex import _table
+from experiment_app.simulated.simulate import simulate
+from protocols.mistakes.consistency import inconsistencies
+from protocols.study_file import parse_study
+
+STUDY = """
+study: floor
+title: How natural?
+about: Ratings at the floor of the scale.
+participants: {planned: 12, between: {viewing: [screen, headset]}, assigned: [viewing]}
+factors: {pace: [slow, middle, fast]}
+repetitions: 2
+stimulus: {actor: F1, speed: {$pace: {slow: 0.9, middle: 1.1, fast: 1.3}}, ground: plain}
+task:
+  kind: rating
+  question: How natural?
+  scale: {minimum: 0, maximum: 4, step: 1, low: not, high: very}
+  alternatives: {walk: {}}
+interval: 0.5
+pages:
+  consent: {title: Taking part, text: You will rate walks.}
+  instructions: [{title: Your task, text: Rate.}]
+  debrief: {title: Thank you, text: That was all.}
+analysis:
+  measure: rating
+  label: VAS of naturalness
+  unit: "0-4"
+  anova: {ANOVA}
+  t_tests: [{paired: pace}]
+  pairs: [{factors: pace, by: viewing, adjust: holm}]
+  equivalence: [{factor: pace, bound: 0.5}]
+  aligned_rank_transform: {within: [pace]}
+simulation:
+  rating: {rating: {$pace: {slow: -5, middle: MIDDLE, fast: -5}}, spread: 0.3, noise: 0.3}
+"""
+
+
+def run(folder: Path, middle: str, within: bool = True) -> tuple[AnalysisOutcome, str]:
+    study = STUDY.replace("MIDDLE", middle).replace("ANOVA", "within: [pace], between: [viewing]")
+    if not within:
+        study = re.sub(r"\n  (pairs|equivalence):.*", "", study).replace("within: [pace], between", "between")
+    file = parse_study("floor.yaml", study)
+    assert inconsistencies(file.study) == []
+    for _ in simulate(file, 12, folder / "data", seed=0):
+        pass
+    outcome = analyse(folder / "data" / "floor", folder / "out")
+    return outcome, html.unescape(re.sub("<[^>]+>", "", outcome.report.read_text(encoding="utf-8")))
+
+
+@pytest.fixture(scope="module")
+def some(tmp_path_factory: pytest.TempPathFactory) -> tuple[AnalysisOutcome, str]:
+    return run(tmp_path_factory.mktemp("some"), "0.5")
+
+
+def test_measures_that_nobody_varied_in_are_said_not_to_be_tested(tmp_path: Path) -> None:
+    outcome, page = run(tmp_path, "-5")
+    said = "\n".join(outcome.headlines)
+    assert "VAS of naturalness: no test of pace and viewing, as there is no variance." in said
+    assert "aligned ranks: not testable: no variance." in said
+    assert "(0 of 3 pairs, no p without variance)" in said
+    for wrong in ("No evidence of an effect", "No interaction was significant", "no effect is significant", "nan"):
+        assert wrong not in said
+    assert "[–, –]" not in page
+
+
+def test_a_scale_is_no_unit_and_an_abbreviation_keeps_its_capitals(some: tuple[AnalysisOutcome, str]) -> None:
+    outcome, page = some
+    assert "±0.5 0-4" not in page
+    assert "within ±0.5 (" in "\n".join(outcome.headlines)
+    assert "Dependent variable: VAS of naturalness (0-4)" in page
+    assert [apa.mid_sentence(label) for label in ("Walk ratio", "RT", "x")] == ["walk ratio", "RT", "x"]
+    assert [apa.with_unit("3", unit) for unit in ("s", "%", "", "0-4")] == ["3 s", "3 %", "3", "3"]
+
+
+def test_the_two_standardised_differences_have_names_of_their_own(some: tuple[AnalysisOutcome, str]) -> None:
+    """The same pair: t = d sqrt(n) of differences, where d_av is over the spread between participants."""
+    outcome, page = some
+    pair = pd.read_csv(outcome.report.with_name("pairs.csv"))["sentence"].iloc[0]
+    assert pair.startswith("viewing screen: slow − middle = ")
+    assert re.search(r"p [=<] \.\d{3} \(Holm\), d_av = −\d\.\d\d$", pair)
+    assert "d_av is the difference over the root mean" in page
+    assert "(multivariate model, Holm)" in page
+    table = pd.read_csv(outcome.report.with_name("comparisons.csv"))
+    row = table[(table["a"] == "slow") & (table["b"] == "middle")].iloc[0]
+    assert row["t"] == pytest.approx(row["d"] * row["n"] ** 0.5, rel=1e-12)
+
+
+def test_words_for_one_of_a_kind(tmp_path: Path, some: tuple[AnalysisOutcome, str]) -> None:
+    assert "submitted to a two-way mixed analysis" in some[1]
+    _, page = run(tmp_path, "2", within=False)
+    assert "submitted to a one-way analysis of variance" in page
+    assert re.search(r"Levene's test \(from the median\) (does not reject|rejects) them, F\(1, 10\) = ", page)
+    assert re.search(r"Of 2 cells tested one by one, . ha(s|ve) p < .05; 0\.1 would be expected by chance", page)
+
+
+def test_a_test_that_leaves_somebody_out_says_so_beside_its_result() -> None:
+    """The ANOVA may rest on more or fewer people than the ranks and the regression do."""
+    plan = plan_of({
+        "factors": {"actor": ["F1", "F2", "M1"]},
+        "analysis": {
+            "measure": "y",
+            "aligned_rank_transform": {"within": ["actor"]},
+            "equivalence": [{"factor": "actor", "bound": 1}],
+            "anova": {"within": ["actor"]},
+            "regression": {"of": "actor", "on": {"height": {"F1": 1.6, "F2": 1.7, "M1": 1.8}}},
+        },
+    })  # fmt: skip
+    rng = np.random.default_rng(3)
+    used = pd.DataFrame([(f"P{p}", a, rng.normal()) for p in range(8) for a in ("F1", "F2", "M1")])
+    used = used.set_axis(["participant", "actor", "y"], axis=1).iloc[1:]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", AnalysisWarning)
+        tests = [run_one(used) for _, run_one in planned_tests(plan)]
+    assert [test.kind for test in tests] == ["equivalence", "regression", "aligned_rank_transform"]
+    assert all(any("P0 (no data in F1)" in note for note in test.notes) for test in tests)
+
+
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="it needs LaTeX (pdflatex)")
+def test_a_table_longer_than_a_page_goes_on_over_the_next(tmp_path: Path) -> None:
+    """An ANOVA of seven factors has 127 effects."""
+    rows = [[f"effect {i}", "1, 20", "1.00", "< .001"] for i in range(127)]
+    written = _table("Analysis of variance", ["Effect", "df", "$F$", "$p$"], rows)
+    page = r"\documentclass{article}\usepackage{booktabs,longtable}\begin{document}" + written + r"\end{document}"
+    (tmp_path / "page.tex").write_text(page, encoding="utf-8")
+    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "page.tex"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, errors="replace", check=False)
+    assert done.returncode == 0, done.stdout
+    assert "too large" not in done.stdout
+    assert "(3 pages" in done.stdout or "(4 pages" in done.stdout
