@@ -6,12 +6,12 @@ import gc
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from experiment_app.checking.check import check_names, checked_study, refuse_mistakes
 from experiment_app.console.asking import listening
@@ -21,6 +21,7 @@ from experiment_app.crash_note import crash_note, leave_note
 from experiment_app.crowds import plan_of
 from experiment_app.errors import RunError, UsageError
 from experiment_app.gaze.recording import gaze_watched, recording_gaze
+from experiment_app.imports import imported, other_imports
 from experiment_app.loop import run_session
 from experiment_app.markers.lsl import import_pylsl
 from experiment_app.markers.stream import announcing
@@ -98,9 +99,7 @@ def run_live(
     check_participant(participant)
     file = checked_study(study)
     refuse_mixed(data, file.study.study, kind_of(False, pilot))
-    others = [h["participant"] for h in first_headers(data, file.study.study) if h["study_hash"] != file.hash]
-    if others:
-        say(f"Note: {', '.join(others[:5])} took part with another version of this study file.")
+    _tell_changes(first_headers(data, file.study.study), file, say)
     old = None if new_run else unfinished_run(data, file.study.study, participant)
     if old is not None and seed is not None:
         raise UsageError(f"--seed: participant {participant} has an unfinished run, which keeps its own order.")
@@ -159,6 +158,18 @@ def run_live(
     return _farewell(opened, command, session.ended, say)
 
 
+def _tell_changes(headers: Sequence[Mapping[str, Any]], file: StudyFile, say: Callable[[str], None]) -> None:
+    """Says who took part with another version of the study file, and with other imported actors, bodies or styles."""
+    others = [header["participant"] for header in headers if header["study_hash"] != file.hash]
+    if others:
+        say(f"Note: {', '.join(others[:5])} took part with another version of this study file.")
+    here = imported(file.study)
+    for name, sha256 in here.items():
+        others = [h["participant"] for h in headers if h.get("imported", {}).get(name, sha256) != sha256]
+        if others:
+            say(f"Note: {', '.join(others[:5])} saw another {name} than this computer has; copy its file from there.")
+
+
 def _certify(run: Run, say: Callable[[str], None]) -> None:
     """Writes the timing certificate; where it cannot be, that is said, as it can be made from the journal any time."""
     try:
@@ -192,6 +203,11 @@ def _continues(old: Run, file: StudyFile, resume: str, ask: Callable[[str], bool
     if resume == "no" or (resume == "ask" and not ask(question)):
         say(f"Nothing was changed. Use --new-run to record a new run for {old.participant}.")
         return False
+    if others := other_imports(old.header.get("imported", {}), kept.study):
+        raise UsageError(
+            f"participant {old.participant}'s run cannot go on here: {'; '.join(others)}. Copy the file from the "
+            f"computer where the run began, or say --new-run to record another run for {old.participant}."
+        )
     if old.header["study_hash"] != file.hash:
         refuse_mistakes(kept, check_names(kept))
         say("The study file has changed since; the run goes on with the study it was begun with.")

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from experiment_app.errors import UsageError
+from experiment_app.imports import imported
 from experiment_app.journal import Journal, create_journal, reopen_journal
 from experiment_app.participants.arrivals import first_headers, participant_number
 from experiment_app.run_folder import Run, new_run, participant_runs, progress, run_numbers
@@ -92,6 +93,7 @@ def open_new(
         walkers=_provenance(study.study),
         pilot=pilot,
         group=group,
+        imported=imported(study.study),
     )
     plan = make_plan(study.study, seed, order, group)
     return OpenRun(run, plan, create_journal(run, header), seed, order, False, group)

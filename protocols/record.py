@@ -33,6 +33,8 @@ class Header:
     does.
     pilot: a trial run of the study itself, whose data must never stand among real ones.
     group: level of every between-participant factor that the program assigned.
+    imported: SHA-256 of the file of every imported actor, body and style that is shown, by kind and name, as
+    `actor anna`.
     """
 
     kind = "header"
@@ -51,6 +53,7 @@ class Header:
     walkers: Mapping[str, str] = field(default_factory=dict)
     pilot: bool = False
     group: Mapping[str, str] = field(default_factory=dict)
+    imported: Mapping[str, str] = field(default_factory=dict)
     format: int = FORMAT
 
 

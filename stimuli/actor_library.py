@@ -88,6 +88,11 @@ def imported_names(library: Path | None = None) -> tuple[str, ...]:
     return tuple(name for name in found if NAME.fullmatch(name) and name not in people())
 
 
+def path_of(name: str, library: Path | None = None) -> Path:
+    """The file of an imported actor."""
+    return (library or library_folder()) / f"{name}.npz"
+
+
 def check_name(name: str, library: Path | None = None, replace: bool = False) -> None:
     """Raises ActorError if a new actor cannot have this name."""
     if not NAME.fullmatch(name):
@@ -100,7 +105,7 @@ def check_name(name: str, library: Path | None = None, replace: bool = False) ->
 
 def stored(actor: StoredActor, library: Path | None = None) -> Path:
     """Writes an actor into the library, whole or not at all, and returns the file."""
-    path = (library or library_folder()) / f"{actor.person.name}.npz"
+    path = path_of(actor.person.name, library)
     write_whole(
         path,
         about=np.array(json.dumps(_about(actor), ensure_ascii=False)),
@@ -126,7 +131,7 @@ def write_whole(path: Path, **arrays: Any) -> None:
 
 def read_stored(name: str, library: Path | None = None) -> StoredActor:
     """An actor of the library. Raises ActorError when there is none or its file is damaged."""
-    path = (library or library_folder()) / f"{name}.npz"
+    path = path_of(name, library)
     if name not in imported_names(library):
         raise ActorError(f"there is no imported actor {name!r} in {path.parent}")
     try:

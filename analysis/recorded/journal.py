@@ -205,6 +205,7 @@ def _disagreements(runs: list[RecordedRun]) -> list[str]:
             f"The runs were recorded with {len(hashes)} versions of the study file; the plan stored with "
             f"{runs[0].participant}'s run is followed. {listed(odd)} had another version."
         )
+    found += _other_imports(runs)
     pilot = [run.participant for run in runs if run.header.get("pilot")]
     if pilot:
         found.append(f"These are pilot runs ({listed(pilot)}), recorded to try the study out; they are no results.")
@@ -215,3 +216,17 @@ def _disagreements(runs: list[RecordedRun]) -> list[str]:
             f"{'is' if len(simulated) == 1 else 'are'} simulated. Keep them in separate data folders."
         )
     return found
+
+
+def _other_imports(runs: Sequence[RecordedRun]) -> list[str]:
+    """A sentence for every imported actor, body or style that was not the same in all runs."""
+    known: dict[str, tuple[str, str]] = {}
+    others: dict[str, list[str]] = {}
+    for run in runs:
+        for name, sha256 in run.header.get("imported", {}).items():
+            if known.setdefault(name, (run.participant, sha256))[1] != sha256:
+                others.setdefault(name, []).append(run.participant)
+    return [
+        f"{listed(who)} saw another {name} than {known[name][0]}: a file of that name, but of other content."
+        for name, who in others.items()
+    ]

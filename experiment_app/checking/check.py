@@ -76,8 +76,17 @@ def _names(study: Study, setting: object, place: Place, what: str, known: Sequen
         if name not in known:
             same = [k for k in known if k.lower() == str(name).lower()]
             near = same or get_close_matches(str(name), known, n=1, cutoff=0.5)
-            way = f"did you mean {near[0]}?" if near else f"there are: {', '.join(known)}"
+            way = f"did you mean {near[0]}?" if near else f"there are: {', '.join(known)}{_kept_in(what)}"
             yield Mistake(where, f"there is no {what} {name}; {way}")
+
+
+def _kept_in(what: str) -> str:
+    """Where what was imported is kept, for a name that another computer may know."""
+    from stimuli.user_folder import user_folder
+
+    folder = user_folder("bodies" if what == "body" else "actors")
+    place = folder / "styles" if what == "style" else folder
+    return f"; one that was imported on another computer: copy its file from there to {place}"
 
 
 def expected_minutes(study: Study) -> float:

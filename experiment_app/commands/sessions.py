@@ -123,9 +123,12 @@ def replay(
 
     A film shows each frame for as long as it was on the screen, late ones too.
     """
+    from experiment_app.imports import other_imports
     from experiment_app.replay.command import changed_versions, check_trial, film_trials, opened
 
     recorded, plan, trials = opened(run, trial, practice)
+    for note in other_imports(recorded.header.get("imported", {}), plan.study):
+        problems.print(f"Note: {note}.", style="yellow", markup=False)
     if path is not None:
         width, height = picture_size(size)
         said = film_trials(plan, trials, path, frame_rate(rate), (width, height), with_progress)

@@ -97,7 +97,7 @@ def imported_styles() -> tuple[str, ...]:
 
 def read_style(name: str) -> Style:
     """An imported style. Raises MethodError when its file is damaged."""
-    path = _folder() / f"{name}.npz"
+    path = path_of(name)
     try:
         with np.load(path, allow_pickle=False) as content:
             shift = content["shift"].astype(np.float64)
@@ -118,7 +118,7 @@ def store_style(style: Style, replace_old: bool = False) -> Path:
         raise MethodError(f"{style.name!r} is no name for a new style; use letters, digits, - and _, as lab7_sad")
     if style.name in imported_styles() and not replace_old:
         raise MethodError(f"there is a style {style.name} already; choose another name, or say --replace")
-    path = _folder() / f"{style.name}.npz"
+    path = path_of(style.name)
     write_whole(
         path,
         shift=style.shift,
@@ -127,6 +127,11 @@ def store_style(style: Style, replace_old: bool = False) -> Path:
         provenance=np.array(style.provenance),
     )
     return path
+
+
+def path_of(name: str) -> Path:
+    """The file of an imported style."""
+    return _folder() / f"{name}.npz"
 
 
 def _folder() -> Path:
