@@ -16,6 +16,7 @@ from stimuli.strides import Stride, between_spreads, steady_strides, strides_of
 Floats = NDArray[np.floating]
 
 FASTEST = 4.5  # m/s; race walkers reach 4.4, so a faster stride is a jump in the data or a wrong unit
+SET_DOWN = 0.05  # s after its strike at which a heel is taken to stand; at the strike it still moves by centimetres
 STILL = 0.25  # of foot swing: a pelvis that travels less per stride is on a treadmill
 
 
@@ -108,9 +109,9 @@ def _placements(
             continue
         middle = int(np.clip(round(other[0] * paths.rate), 0, len(paths.pelvis) - 1))
         forward = np.asarray(paths.heading[middle]) if belt else np.zeros(2)
-        first = _flat(paths.heels[index], start + 0.05, paths)
-        second = _flat(paths.heels[1 - index], other[0] + 0.05, paths) + forward * belt * (other[0] - start)
-        third = _flat(paths.heels[index], end, paths) + forward * belt * (end - start)
+        first = _flat(paths.heels[index], start + SET_DOWN, paths)
+        second = _flat(paths.heels[1 - index], other[0] + SET_DOWN, paths) + forward * belt * (other[0] - start)
+        third = _flat(paths.heels[index], end + SET_DOWN, paths) + forward * belt * (end - start)
         line = third - first
         length = np.linalg.norm(line)
         if length < 1e-6:
