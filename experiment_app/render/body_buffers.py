@@ -31,6 +31,7 @@ MOST_MATERIALS = 24  # as in walker.frag.glsl
 MOST_KEPT = 48  # levels of bodies kept on the GPU, about 1 MB each
 
 KNITTED, WOVEN, SKIN, HAIR = 1.0, 2.0, 3.0, 4.0  # fabrics of fabric.glsl
+TIED_HAIR = 5.0  # and the height of the knot (m)
 
 FINISHES: dict[str, tuple[float, float, float, float]] = {
     "skin": (1.0, 0.10, 0.75, SKIN),
@@ -121,14 +122,17 @@ def materials(surfaces: tuple[Surface, ...]) -> tuple[bytes, bytes]:
     colours = np.zeros((MOST_MATERIALS, 4), np.float32)
     for row, surface in enumerate(surfaces):
         colours[row] = (*surface.colour, surface.roughness)
-    return colours.tobytes(), finishes_of([surface.name for surface in surfaces])
+    return colours.tobytes(), finishes_of([s.name for s in surfaces], [s.knot for s in surfaces])
 
 
-def finishes_of(names: Sequence[str]) -> bytes:
-    """Finishes (24, 4) of materials with these names as float32 bytes."""
+def finishes_of(names: Sequence[str], knots: Sequence[float | None] = ()) -> bytes:
+    """Finishes (24, 4) of materials with these names as float32 bytes; `knots` as in `Surface`."""
     finishes = np.zeros((MOST_MATERIALS, 4), np.float32)
     for row, name in enumerate(names):
         finishes[row] = FINISHES.get(name, CLOTH)
+    for row, knot in enumerate(knots):
+        if knot is not None:
+            finishes[row, 3] = TIED_HAIR + knot
     return finishes.tobytes()
 
 

@@ -24,6 +24,7 @@ class Surface:
     roughness: 0 (mirror) .. 1 (chalk).
     positions: (V, 3) m, bind pose; normals: (V, 3) unit length; occlusion: (V,) 0 (dark) .. 1 (open sky).
     blush:     (V,) share of green and blue light that blood under the skin takes, 0 .. MOST_BLUSH; None is none.
+    knot:      m above the ground, where hair is tied at the back of the head; None where it hangs from the crown.
     joints:    (V, 4) int, indices into skeleton JOINTS; weights: (V, 4), not negative, rows sum to 1.
     triangles: (T, 3) int, counter-clockwise seen from outside.
     picture:   (H, W, 4) uint8 sRGB and alpha, multiplied by the colour; None is the colour alone.
@@ -49,6 +50,7 @@ class Surface:
     alpha_factor: float = 1.0
     double_sided: bool = False
     blush: Floats | None = None
+    knot: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

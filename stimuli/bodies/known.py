@@ -125,7 +125,8 @@ def scaled(body: Body, stature: float) -> Body:
     factor = stature / body.stature
 
     def grown(surface: Surface) -> Surface:
-        return replace(surface, positions=surface.positions * factor)
+        knot = None if surface.knot is None else surface.knot * factor
+        return replace(surface, positions=surface.positions * factor, knot=knot)
 
     return Body(
         body.name,

@@ -121,7 +121,17 @@ def _surface(container: Container, primitive: dict[str, Any], to_metres: Floats,
         weights=weights / total,
         triangles=triangles.reshape(-1, 3),
         blush=_blush(colour),
+        knot=_knot(material, where),
     )
+
+
+def _knot(material: dict[str, Any], where: str) -> float | None:
+    knot = material.get("extras", {}).get("gaitlab", {}).get("knot")
+    if knot is None:
+        return None
+    if not 0 < float(knot) < 3.5:
+        raise BodyError(f"{where}: the knot of {material.get('name')!r} is {knot} m above the ground")
+    return float(knot)
 
 
 def _blush(colour: Floats) -> Floats | None:

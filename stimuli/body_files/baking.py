@@ -108,7 +108,8 @@ def _material(surface: Surface, materials: list[dict[str, Any]]) -> int:
     if surface.name not in names:
         colour = [round(float(c), 5) for c in surface.colour]
         pbr = {"baseColorFactor": [*colour, 1.0], "metallicFactor": 0.0, "roughnessFactor": surface.roughness}
-        materials.append({"name": surface.name, "pbrMetallicRoughness": pbr})
+        tied = {} if surface.knot is None else {"extras": {"gaitlab": {"knot": round(surface.knot, 4)}}}
+        materials.append({"name": surface.name, "pbrMetallicRoughness": pbr, **tied})
         return len(materials) - 1
     return names.index(surface.name)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,12 +11,14 @@ from stimuli.body_generator.blush import blush
 from stimuli.body_generator.face import face_patches
 from stimuli.body_generator.fields import Field
 from stimuli.body_generator.figure import Figure
-from stimuli.body_generator.hair import cap_field, style, style_names
+from stimuli.body_generator.hair import knot_height, style_names
+from stimuli.body_generator.haircuts import hair_pieces
 from stimuli.body_generator.head import head_frame
 from stimuli.body_generator.heat import Heat, bone_heat, weights_at
 from stimuli.body_generator.light import occlusion
-from stimuli.body_generator.locks import comb
 from stimuli.body_generator.parts import Part, parts_of
+from stimuli.body_generator.patches import Canvas
+from stimuli.body_generator.pieces import Piece
 from stimuli.body_generator.polygons import (
     Mesh,
     edged,
@@ -51,19 +52,6 @@ LEVELS = 3
 RIM = 0.45  # cm inside cloth up to which the cloth's own normals count
 EDGE_REACH = (1.0, 1.5, 0.0)  # cm from its end within which cloth is brought to a sharp edge; not in crowds
 UNION_SPACING = 1.15  # cm
-HAIR_BUDGETS = (800, 300, 150)  # triangles of the cap
-LOCK_SEGMENTS = (4, 2, 0)
-LOCK_SHARE = (1.0, 0.55, 0.0)
-
-
-@dataclass(frozen=True, eq=False)
-class Piece:
-    """Triangles with all their attributes, in cm."""
-
-    material: str
-    mesh: Mesh
-    normals: Floats
-    shade: Floats
 
 
 def build(figure: Figure, coarseness: float = 1.0, report: Callable[[str], None] = lambda _: None) -> Body:
@@ -77,9 +65,9 @@ def build(figure: Figure, coarseness: float = 1.0, report: Callable[[str], None]
         for level, piece in enumerate(solid_pieces(part, everything, coarseness)):
             levels[level] += piece
     report("face")
-    face = next(part.field for part in parts if part.name == "head")
-    for level, fineness in enumerate((1.0, 0.5, 0.25)):
-        levels[level] += face_pieces(face, figure, fineness)
+    head = next(part for part in parts if part.name == "head")
+    for level, fineness in enumerate((1.0, 0.5, 0.38)):
+        levels[level] += face_pieces(head, everything, figure, fineness)
     for name in style_names(figure):
         report(name)
         for level, pieces in enumerate(hair_pieces(name, figure, everything, coarseness)):
@@ -115,8 +103,7 @@ def solid_pieces(part: Part, everything: Field, coarseness: float = 1.0) -> list
         mesh = _edged(part, mesh, EDGE_REACH[level])
         edge = np.sqrt(_area(mesh) / max(len(mesh.triangles), 1))
         normals = _normals(part, field, mesh.positions, float(np.clip(0.22 * edge, 0.12, 0.5)))
-        shade = 1 - (1 - part.soft) * (1 - occlusion(everything, field, mesh.positions, normals))
-        shade = shade * part.paint(mesh.positions)
+        shade = _shade(part, everything, field, mesh.positions, normals)
         piece = Piece(part.material, mesh, normals, shade)
         pieces = [piece]
         if part.seams and level == 0:
@@ -141,42 +128,21 @@ def _normals(part: Part, field: Field, positions: Floats, step: float) -> Floats
     return mixed / np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), 1e-9)
 
 
-def face_pieces(face: Field, figure: Figure, fineness: float) -> list[Piece]:
-    """Eyes, lashes, brows and lips; `fineness` 1 for close-ups, less for coarser levels."""
-    patches = face_patches(face, head_frame(figure), figure.female, fineness)
-    return [Piece(p.material, p.mesh, p.normals, p.occlusion) for p in patches]
+def face_pieces(part: Part, everything: Field, figure: Figure, fineness: float) -> list[Piece]:
+    """Eyes, brows and lips on the head; `fineness` 1 for close-ups, less for coarser levels."""
+    pieces = []
+    for patch in face_patches(Canvas(part.field, head_frame(figure), fineness), figure.female):
+        shade = patch.shade
+        if patch.material == "skin":
+            shade = shade * _shade(part, everything, part.field, patch.mesh.positions, patch.normals)
+        pieces.append(Piece(patch.material, patch.mesh, patch.normals, shade))
+    return pieces
 
 
-def hair_pieces(name: str, figure: Figure, everything: Field, coarseness: float = 1.0) -> list[list[Piece]]:
-    """Cap and locks of one haircut at each level; the material is called hair:NAME."""
-    frame, cut = head_frame(figure), style(name, figure.female)
-    field = cap_field(cut, figure)
-    spacing = 0.42 * coarseness
-    lower = np.array([-13.0, figure.stature - 34, -22])
-    upper = np.array([13.0, figure.stature + 4, 13])
-    finest = polished(polygonise(field, lower, upper, spacing), field, spacing, rounds=1)
-    found = []
-    for budget, segments, share in zip(HAIR_BUDGETS, LOCK_SEGMENTS, LOCK_SHARE, strict=True):
-        mesh = simplified(finest, round(budget * (3 if cut.locks == 0 and segments else 1) / coarseness))
-        normals = normals_of(field, mesh.positions, 0.3)
-        shade = occlusion(everything, field, mesh.positions, normals)
-        combed = segments > 0 and cut.locks > 0
-        if not combed:
-            normals, shade = _grained(normals, shade)
-        level = [Piece(f"hair:{name}", mesh, normals, shade * (0.62 if combed else 1.0))]
-        if combed:
-            locks = comb(cut, frame, finest, segments, share / coarseness)
-            open_sky = occlusion(everything, field, locks.mesh.positions, locks.normals)
-            level.append(Piece(f"hair:{name}", locks.mesh, locks.normals, locks.shade * (0.35 + 0.65 * open_sky)))
-        found.append(level)
-    return found
-
-
-def _grained(normals: Floats, shade: Floats) -> tuple[Floats, Floats]:
-    """Normals and shade of clipped hair: uneven from vertex to vertex, so that it does not shine like a cap."""
-    rng = np.random.default_rng(8)
-    uneven = normals + rng.normal(0, 0.10, normals.shape)
-    return uneven / np.linalg.norm(uneven, axis=1, keepdims=True), shade * rng.uniform(0.84, 1.0, len(shade))
+def _shade(part: Part, everything: Field, field: Field, positions: Floats, normals: Floats) -> Floats:
+    """(V,) of a part's surface: the sky that it sees, what is painted on it, what goes on under it."""
+    shade = 1 - (1 - part.soft) * (1 - occlusion(everything, field, positions, normals))
+    return shade * part.paint(positions)
 
 
 def gathered(figure: Figure, levels: list[list[Piece]], heat: Heat) -> Body:
@@ -210,6 +176,7 @@ def _surface(figure: Figure, name: str, pieces: list[Piece], heat: Heat) -> Surf
         weights=weights,
         triangles=triangles,
         blush=blush(figure, positions) if name == "skin" else None,
+        knot=knot_height(name.removeprefix("hair:"), figure),
     )
 
 

@@ -10,10 +10,10 @@ from stimuli.skeleton import Floats
 
 # centre on the left in head coordinates (cm), how far it spreads (cm, one sigma), how red (see `Surface.blush`)
 _FACE = (
-    ((4.4, 160.0, 6.8), 1.7, 0.20),
+    ((4.4, 160.0, 6.8), 1.7, 0.16),
     ((0.0, 160.2, 10.6), 1.0, 0.16),
     ((1.2, 159.8, 9.8), 0.7, 0.08),
-    ((8.3, 162.0, -1.2), 2.1, 0.20),
+    ((8.3, 162.0, -1.2), 1.6, 0.16),
     ((0.0, 153.8, 8.4), 1.1, 0.08),
     ((2.6, 162.0, 8.0), 0.8, 0.06),
 )

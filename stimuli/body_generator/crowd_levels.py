@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from stimuli.bodies.body import Surface
+from stimuli.bodies.body import Integers, Surface
 from stimuli.bodies.known import hair_names, load_body
 from stimuli.crowds.bodies import KEPT, LEVELS
 from stimuli.skeleton import JOINTS, Floats
@@ -26,42 +26,71 @@ SMALL = ("eye", "iris", "pupil", "lash", "brow", "lip", "laces", "soles")
 """Surfaces that a coarse level does without."""
 
 LEAST = 6  # triangles of a surface
+PULLS = (5, 3, 4, 6, 7, 8)  # how fast edges are collapsed (fast-simplification's `agg`)
 HAIR_LIFT = 0.008  # m, so that the corners of a coarse head do not stick out of coarse hair
 
 
 def simplified(surface: Surface, share: float, carriers: int) -> Surface:
-    """The surface with a share of its triangles, each vertex carried by so many joints at most."""
-    import fast_simplification
+    """The surface with a share of its triangles, each vertex carried by so many joints at most.
 
+    Of several ways of collapsing edges, the one whose triangles are moved most nearly by the joints that move the fine
+    surface there: few triangles with corners on arms, legs and neck alone would leave no chest between them.
+    """
     welded, corner = np.unique(np.round(surface.positions, 5), axis=0, return_inverse=True)
     triangles = corner.ravel()[surface.triangles]
     a, b, c = triangles.T
     whole = triangles[(a != b) & (b != c) & (c != a)].astype(np.int32)
     count = max(round(len(surface.triangles) * share), LEAST)
-    positions, triangles = fast_simplification.simplify(welded.astype(np.float32), whole, target_count=count, agg=5)
-    used, triangles = np.unique(triangles, return_inverse=True)
-    positions = positions[used].astype(float)
-    distance, near = cKDTree(surface.positions).query(positions, k=4)
-    shares = 1.0 / (distance + 1e-3) ** 2
-    shares /= shares.sum(axis=1, keepdims=True)
-
-    def around(values: Floats) -> Floats:
-        return np.asarray(np.einsum("vk,vkc->vc", shares, values[near]))
-
     carried = np.zeros((len(surface.positions), len(JOINTS)))
     np.add.at(carried, (np.arange(len(carried))[:, None], surface.joints), surface.weights)
-    joints, weights = _heaviest(around(carried), carriers)
-    normals = around(surface.normals)
+    around = _Around(surface.positions)
+    found = [_collapsed(welded.astype(np.float32), whole, count, pull) for pull in PULLS]
+    fewest = min(len(chosen) for _, chosen in found)
+    few = [mesh for mesh in found if len(mesh[1]) <= max(fewest, count)]
+    positions, chosen = min(few, key=lambda mesh: _misled(mesh[0], mesh[1], around, carried))
+    normals = around(positions, surface.normals)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
+    joints, weights = _heaviest(around(positions, carried), carriers)
     return replace(
         surface,
         positions=positions + (HAIR_LIFT if surface.name == "hair" else 0.0) * normals,
         normals=normals,
-        occlusion=around(surface.occlusion[:, None])[:, 0],
+        occlusion=around(positions, surface.occlusion[:, None])[:, 0],
         joints=joints,
         weights=weights,
-        triangles=triangles.reshape(-1, 3),
+        triangles=chosen,
     )
+
+
+class _Around:
+    """What the vertices around a place have."""
+
+    def __init__(self, vertices: Floats) -> None:
+        self._tree = cKDTree(vertices)
+
+    def __call__(self, places: Floats, values: Floats) -> Floats:
+        """(P, C) of values (V, C) of the vertices, at places (P, 3)."""
+        distance, near = self._tree.query(places, k=4)
+        shares = 1.0 / (distance + 1e-3) ** 2
+        shares /= shares.sum(axis=1, keepdims=True)
+        return np.asarray(np.einsum("vk,vkc->vc", shares, values[near]))
+
+
+def _collapsed(positions: Floats, triangles: Integers, count: int, pull: int) -> tuple[Floats, Integers]:
+    import fast_simplification
+
+    positions, triangles = fast_simplification.simplify(positions, triangles, target_count=count, agg=pull)
+    used, triangles = np.unique(triangles, return_inverse=True)
+    return positions[used].astype(float), triangles.reshape(-1, 3)
+
+
+def _misled(positions: Floats, triangles: Integers, around: _Around, carried: Floats) -> float:
+    """By how much joints' weights in the middle of triangles differ from the fine surface's, over its area."""
+    corners = positions[triangles]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    coarse = around(positions, carried)[triangles].mean(axis=1)
+    off = np.abs(coarse - around(corners.mean(axis=1), carried)).sum(axis=1)
+    return float(area @ off / area.sum())
 
 
 def _heaviest(weights: Floats, carriers: int) -> tuple[np.ndarray, Floats]:

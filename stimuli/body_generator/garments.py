@@ -107,8 +107,8 @@ def _shirt_solid(figure: Figure, trousers: Field, hem: float) -> Field:
     # up x left points back, as the torso table wants
     shoulder = np.array(figure.shoulder)
     neck_y = figure.neck[1]
-    yoke_radii = (3.3, 2.6) if figure.female else (4.0, 3.4)
-    yoke = capsule((3.5, neck_y - 6, -2.2), (shoulder[0] - 0.8, shoulder[1] - 1.0, -1.6), *yoke_radii)
+    yoke_radii = (3.6, 2.6) if figure.female else (4.4, 3.4)
+    yoke = capsule((3.5, neck_y - 6, -2.2), (shoulder[0] - 0.8, shoulder[1] - 1.3, -1.6), *yoke_radii)
     sleeve = generalised_cylinder(shoulder, figure.arm_direction, (0, 0, -1), figure.sleeve, rounding=0.4)
     blade = ellipsoid((shoulder[0] * 0.5, shoulder[1] - 8, -8.8), (5.5, 7, 2.6))
     if figure.bust is not None:

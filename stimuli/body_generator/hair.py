@@ -10,21 +10,34 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from stimuli.body_generator.fields import Field, capsule, ellipsoid, generalised_cylinder, join, smooth_max, smooth_min
 from stimuli.body_generator.figure import Figure
 from stimuli.body_generator.head import head_frame, skull_field
 from stimuli.body_generator.polygons import normals_of
+from stimuli.body_generator.scalp import Hairline, hairline
 from stimuli.skeleton import Floats
 
-_ANGLES = np.radians([0, 14, 28, 40, 52, 62, 70, 80, 90, 98, 112, 128, 150, 180])  # 0 = front, 180 = nape
-_LINE = {  # height of the hairline at those angles
-    "short": (170.9, 171.1, 171.3, 170.0, 167.5, 165.3, 163.2, 161.8, 161.8, 164.9, 162.5, 159.0, 156.3, 155.6),
-    "cropped": (171.0, 171.2, 171.6, 170.4, 167.8, 165.4, 163.4, 162.4, 162.6, 165.1, 162.6, 159.2, 156.6, 155.9),
-    "ponytail": (170.7, 170.6, 170.0, 168.3, 166.0, 164.1, 162.9, 162.0, 162.6, 164.4, 161.8, 158.6, 155.8, 154.8),
-}
+# degrees round the head from the forehead, y: the temple, the sideburn before the ear, over and behind it, the nape
+_LINES = {
+    "short": (
+        (0, 170.9), (14, 171.1), (28, 171.3), (40, 170.2), (50, 168.2), (58, 166.0), (64, 164.4), (69, 162.3),
+        (75, 161.4), (80, 161.9), (83, 164.0), (86, 165.5), (96, 165.9), (106, 165.0), (113, 162.6), (120, 160.0),
+        (130, 158.2), (145, 157.0), (160, 156.3), (180, 156.0),
+    ),
+    "cropped": (
+        (0, 171.0), (14, 171.2), (28, 171.6), (38, 170.8), (48, 168.6), (57, 166.4), (64, 164.6), (69, 162.9),
+        (75, 162.2), (80, 162.7), (83, 164.3), (86, 165.6), (96, 166.0), (106, 165.1), (113, 162.8), (120, 160.3),
+        (130, 158.5), (145, 157.3), (160, 156.6), (180, 156.3),
+    ),
+    "ponytail": (
+        (0, 170.7), (14, 170.7), (28, 170.2), (40, 168.9), (50, 167.3), (58, 166.1), (65, 165.0), (71, 163.6),
+        (76, 163.1), (80, 163.4), (83, 164.6), (87, 165.5), (96, 165.7), (106, 164.6), (113, 162.2), (120, 159.8),
+        (130, 157.8), (145, 156.4), (160, 155.4), (180, 155.0),
+    ),
+}  # fmt: skip
 
+KNOT = (0.0, 165.2, -11.6)  # of the ponytail
 PARTING = 2.6  # cm to the left, of the bob
 
 
@@ -32,14 +45,16 @@ PARTING = 2.6  # cm to the left, of the bob
 class Style:
     """A haircut: the solid under the locks, the surface locks lie on, and how locks run.
 
-    cap:      field (head coordinates) of the solid, ending at the hairline.
-    volume:   the same without its lower and front ends; locks are traced on it.
+    line:     where it grows out of the skin, if it has a hairline; the rest is a solid of its own.
+    solid:    field (head coordinates) of what hangs, if anything does.
+    volume:   the whole of it without its lower and front ends; locks are traced on it.
     flow:     points (N, 3), normals (N, 3) -> direction (N, 3), not necessarily tangent.
     locks:    how many; `length`, `width` and `lift` of each from its root (N, 3).
     ends:     field that is negative where locks may lie.
     """
 
-    cap: Field
+    line: Hairline | None
+    solid: Field | None
     volume: Field
     flow: Callable[[Floats, Floats], Floats]
     locks: int
@@ -52,29 +67,19 @@ def style_names(figure: Figure) -> tuple[str, ...]:
     return ("bob", "ponytail") if figure.female else ("short", "cropped")
 
 
-def style(name: str, female: bool) -> Style:
-    """The haircut of that name, cut for the skull of a woman or a man."""
-    return {"short": _short, "cropped": _cropped, "bob": _bob, "ponytail": _ponytail}[name](skull_field(female))
+def style(name: str, figure: Figure) -> Style:
+    """The haircut of that name, cut for the figure's skull."""
+    return {"short": _short, "cropped": _cropped, "bob": _bob, "ponytail": _ponytail}[name](skull_field(figure))
 
 
-def _angle(points: Floats) -> Floats:
-    return np.abs(np.arctan2(points[:, 0], points[:, 2] + 0.3))
-
-
-def _above_line(name: str) -> Field:
-    """Height above the hairline (cm), positive inside the hair."""
-    line = PchipInterpolator(_ANGLES, _LINE[name])
-    return lambda p: p[:, 1] - line(_angle(p))
-
-
-def _cap(skull: Field, name: str, thickness: Callable[[Floats], Floats]) -> Field:
-    above = _above_line(name)
+def _cap(line: Hairline, thickness: Callable[[Floats], Floats]) -> Field:
+    lowest = line.edge[:, 1].min() - 1.0  # below, only the inside of the neck is left
 
     def cap(p: Floats) -> Floats:
         front = np.clip((p[:, 2] - 2.0) / 4.0, 0, 1)  # where it grows away from the face it begins thin
-        grown = np.clip(above(p) / (2.2 + 2.2 * front), -1, 1)
-        grown = np.where(grown > 0, np.maximum(grown, 0) ** (0.6 + 0.3 * front), 3 * grown)
-        return skull(p) - thickness(p) * grown + 0.12
+        grown = np.clip(line.above(p) / (1.6 + 0.9 * front), -1, 1)
+        grown = np.where(grown > 0, np.maximum(grown, 0) ** 0.7, 3 * grown)
+        return smooth_max(line.skull(p) - thickness(p) * grown - 0.02, lowest - p[:, 1], 0.3)
 
     return cap
 
@@ -89,22 +94,24 @@ def _short(skull: Field) -> Style:
         parting = np.exp(-(((p[:, 0] - 4.0) / 0.7) ** 2)) * (p[:, 2] > -3)
         return 0.55 + top * (1.2 + 0.25 * front) * (1 - 0.45 * parting) * np.where(p[:, 0] > 4.2, 0.75, 1)
 
-    cap = _cap(skull, "short", thickness)
+    line = hairline(skull, _LINES["short"])
+    cap = _cap(line, thickness)
 
     def flow(p: Floats, n: Floats) -> Floats:
         up = np.clip(n[:, 1], 0, 1)[:, None] ** 1.5
         across = np.where(p[:, :1] > 4.0, 1.0, -1.0) * np.array([1.0, 0, 0]) + np.array([0, 0, 0.25])
         front = np.clip((p[:, 2:] - 4) / 4, 0, 1)
         combed = across * (1 - 0.35 * front) + front * np.array([0, 0.9, -0.25])
+        behind = np.clip((1.0 - p[:, 2:]) / 5, 0, 1)
+        combed = combed * (1 - behind) + behind * np.array([0, 0, -1.0])
         down = np.array([0, -1.0, -0.45])
         return up * combed * 1.6 + (1 - up) * down
 
     def shape(p: Floats) -> tuple[Floats, Floats, Floats]:
         top = np.clip((p[:, 1] - 168.0) / 3.0, 0, 1)
-        return 1.7 + 3.4 * top, 0.8 + 1.0 * top, 0.07 + 0.06 * top
+        return 1.7 + 3.4 * top, 0.8 + 1.0 * top, 0.06 + 0.03 * top
 
-    above = _above_line("short")
-    return Style(cap, cap, flow, 186, shape, lambda p: 0.15 - above(p))
+    return Style(line, None, cap, flow, 164, shape, lambda p: 0.7 - line.above(p))
 
 
 def _cropped(skull: Field) -> Style:
@@ -113,7 +120,8 @@ def _cropped(skull: Field) -> Style:
     def thickness(p: Floats) -> Floats:
         return 0.45 + 0.45 * np.clip((p[:, 1] - 167) / 5, 0, 1)
 
-    cap = _cap(skull, "cropped", thickness)
+    line = hairline(skull, _LINES["cropped"])
+    cap = _cap(line, thickness)
 
     def flow(p: Floats, n: Floats) -> Floats:
         forward = np.array([0.0, 0, 1.0]) + 0.5 * np.sign(p[:, :1]) * np.array([1.0, 0, 0])
@@ -124,8 +132,7 @@ def _cropped(skull: Field) -> Style:
         one = np.ones(len(p))
         return 1.6 * one, 0.8 * one, 0.07 * one
 
-    above = _above_line("cropped")
-    return Style(cap, cap, flow, 0, shape, lambda p: 0.8 - above(p))
+    return Style(line, None, cap, flow, 0, shape, lambda p: 0.8 - line.above(p))
 
 
 def _bob(skull: Field) -> Style:
@@ -177,27 +184,27 @@ def _bob(skull: Field) -> Style:
         return 6.5 * one, 1.2 * one, 0.26 - 0.16 * np.clip((p[:, 1] - 169) / 4, 0, 1)
 
     def ends(p: Floats) -> Floats:
-        off_the_face = np.minimum(0.25 - above(p), -0.35 - opening(p))
+        off_the_face = np.minimum(0.25 - above(p), -0.6 - opening(p))
         return np.maximum(off_the_face, 153.6 - 0.9 * np.clip(p[:, 2] / 6, -1, 1) - p[:, 1])
 
-    return Style(cap, volume, flow, 195, shape, ends)
+    return Style(None, cap, volume, flow, 195, shape, ends)
 
 
 def _ponytail(skull: Field) -> Style:
     """Combed back from the face and tied behind the crown."""
-    knot = np.array([0.0, 165.2, -11.6])
+    knot = np.array(KNOT)
 
     def thickness(p: Floats) -> Floats:
         return 0.75 + 0.45 * np.clip((p[:, 1] - 166) / 6, 0, 1)
 
-    cap_only = _cap(skull, "ponytail", thickness)
+    line = hairline(skull, _LINES["ponytail"])
     tail = join(
         capsule((0, 165.2, -10.8), (0, 165.8, -13.2), 1.5, 1.7),
         (capsule((0, 165.6, -13.2), (0, 161.7, -15.2), 1.6, 2.2), 2.5),
         (capsule((0, 161.7, -15.2), (0, 152.2, -15.2), 2.2, 1.7), 2.5),
         (capsule((0, 152.2, -15.2), (0, 146.2, -13.8), 1.7, 0.6), 2.0),
     )
-    cap = join(cap_only, (tail, 0.7))
+    volume = join(_cap(line, thickness), (tail, 0.7))
 
     def flow(p: Floats, n: Floats) -> Floats:
         to_knot = knot - p
@@ -209,11 +216,18 @@ def _ponytail(skull: Field) -> Style:
         behind = p[:, 2] < knot[2] - 0.5
         return np.where(behind, 7.5, 6.0), np.where(behind, 1.3, 1.1), np.where(behind, 0.22, 0.09)
 
-    above = _above_line("ponytail")
-    return Style(cap, cap, flow, 190, shape, lambda p: np.where(p[:, 2] < -11, 146.9 - p[:, 1], 0.15 - above(p)))
+    def ends(p: Floats) -> Floats:
+        return np.where(p[:, 2] < -11, 146.9 - p[:, 1], 0.7 - line.above(p))
+
+    return Style(line, tail, volume, flow, 168, shape, ends)
 
 
-def cap_field(cut: Style, figure: Figure) -> Field:
-    """The cap in the figure's own coordinates."""
+def knot_height(name: str, figure: Figure) -> float | None:
+    """m above the ground, where the hair of that haircut is tied."""
+    return float(head_frame(figure).to_figure(np.array(KNOT))[1] / 100) if name == "ponytail" else None
+
+
+def solid_field(solid: Field, figure: Figure) -> Field:
+    """A haircut's solid in the figure's own coordinates."""
     frame = head_frame(figure)
-    return lambda p: cut.cap(frame.to_head(p)) * frame.scale
+    return lambda p: solid(frame.to_head(p)) * frame.scale

@@ -28,6 +28,7 @@ from stimuli.body_generator.figure import Figure
 from stimuli.skeleton import Floats
 
 CROWN = 175.0
+MIDDLE = (0.0, 163.5, -0.5)  # of the head, in head coordinates
 
 # height; 0, 0; half breadth twice; back, front; exponent
 _SECTIONS_MAN = (
@@ -48,8 +49,10 @@ _SECTIONS_MAN = (
     (174.4, 0, 0, 3.1, 3.1, 4.3, 3.4, 2.0),
     (174.95, 0, 0, 1.0, 1.0, 1.4, 1.1, 2.0),
 )
-_JAW_MAN = {153.8: 0.96, 155.5: 0.95, 157.2: 1.0, 159.2: 1.02, 161.2: 0.99}
-_JAW_WOMAN = {151.8: 0.80, 152.6: 0.80, 153.8: 0.80, 155.5: 0.81, 157.2: 0.95, 159.2: 0.985, 161.2: 0.985}
+# share of the breadths above: faces narrow from cheekbones 13.7 (woman 13.0) cm apart to jaw angles 10.5 (9.6) cm
+# apart, measured on the skin (Farkas 1994: zygion 13.7 and 13.0, gonion 9.7 and 9.1 cm on the bone)
+_JAW_MAN = {151.8: 0.9, 152.6: 0.9, 153.8: 0.90, 155.5: 0.87, 157.2: 0.86, 159.2: 0.93, 161.2: 0.975}
+_JAW_WOMAN = {151.8: 0.76, 152.6: 0.76, 153.8: 0.77, 155.5: 0.79, 157.2: 0.86, 159.2: 0.925, 161.2: 0.965}
 
 
 @dataclass(frozen=True)
@@ -74,7 +77,7 @@ def head_frame(figure: Figure) -> HeadFrame:
 def head(figure: Figure, chest: Field) -> Field:
     """Head with ears, and the neck down into the collar, where it runs out on the `chest` under the shirt."""
     frame = head_frame(figure)
-    face = _face(figure.female)
+    face = join(_face(figure.female), (_ear(), 0.5))
     neck = _neck(figure)
 
     def field(points: Floats) -> Floats:
@@ -102,21 +105,22 @@ def beard_shadow(figure: Figure) -> Callable[[Floats], Floats]:
     return shade
 
 
-def skull_field(female: bool) -> Field:
-    """The head without features, in head coordinates: what hair grows on.
+def skull_field(figure: Figure) -> Field:
+    """The head and nape without ears, in head coordinates: what hair grows on.
 
     Measured along rays from the middle of the head, so that it stays round far above the skin too.
     """
-    middle = np.array([0.0, 163.5, -0.5])
+    frame, face, neck = head_frame(figure), _face(figure.female), _neck(figure)
+    skin = join(face, (lambda p: neck(frame.to_figure(p)) / frame.scale, 2.4 / frame.scale))
+    middle = np.array(MIDDLE)
     azimuth, height = np.linspace(-np.pi, np.pi, 145), np.linspace(-1, 1, 121)
     a, h = (g.ravel() for g in np.meshgrid(azimuth, height, indexing="ij"))
     flat = np.sqrt(1 - h * h)
     rays = np.column_stack([flat * np.sin(a), h, flat * np.cos(a)])
     near, far = np.zeros(len(rays)), np.full(len(rays), 16.0)
-    skull = _sections(female)
     for _ in range(28):
         half = 0.5 * (near + far)
-        inside = skull(middle + half[:, None] * rays) < 0
+        inside = skin(middle + half[:, None] * rays) < 0
         near, far = np.where(inside, half, near), np.where(inside, far, half)
     grid = gaussian_filter(near.reshape(145, 121), 1.5, mode=("wrap", "nearest"))
     table = RegularGridInterpolator((azimuth, height), grid)
@@ -142,7 +146,7 @@ def _sections(female: bool) -> Field:
 def _face(female: bool) -> Field:
     skull = _sections(female)
     strong = 0.0 if female else 1.0
-    jaw = mirrored(ellipsoid((3.1 + 1.4 * strong, 157.2, 2.0), (0.9 + 0.4 * strong, 2.2, 2.6)))
+    jaw = mirrored(ellipsoid((3.5 + 0.35 * strong, 156.9, 1.6), (0.8 + 0.25 * strong, 2.0, 2.2)))
     chin = ellipsoid((0, 153.75, 7.55), (1.75 + 0.5 * strong, 1.45, 1.35))
     muzzle = ellipsoid((0, 157.0, 7.0), (3.0, 2.3, 2.35))
     cheek = mirrored(ellipsoid((4.5, 161.0, 5.7), (1.9, 1.6, 1.7)))
@@ -150,7 +154,7 @@ def _face(female: bool) -> Field:
     hollow_fill = mirrored(ellipsoid((3.35 + 0.45 * strong, 157.4, 4.9), (1.35 + 0.1 * strong, 2.8, 2.3)))
     jaw_line = mirrored(
         capsule(
-            (3.3 + 0.9 * strong, 155.9, 3.2), (0.9 + 0.7 * strong, 153.7, 6.9), 0.8 + 0.1 * strong, 0.7 + 0.2 * strong
+            (3.75 + 0.3 * strong, 155.8, 1.6), (1.0 + 0.6 * strong, 153.6, 6.9), 0.6 + 0.1 * strong, 0.65 + 0.2 * strong
         )
     )
     brow = mirrored(ellipsoid((2.6, 165.45, 8.0), (1.9 + 0.3 * strong, 0.62 + 0.12 * strong, 0.62 + 0.3 * strong)))
@@ -162,18 +166,19 @@ def _face(female: bool) -> Field:
         (cheek, 2.4),
         (apple, 2.0),
         (hollow_fill, 2.6),
-        (jaw_line, 2.6),
+        (jaw_line, 1.8),
         (brow, 1.6),
     )
     shape = cut(shape, mirrored(ellipsoid((3.15, 163.4, 10.5), (1.85, 1.2, 1.85 + 0.2 * strong))), 1.5)
     shape = cut(shape, mirrored(ellipsoid((7.8, 166.5, 6.0), (1.0, 2.5, 2.8))), 1.6)  # temples
-    lids = mirrored(ellipsoid((3.2, 163.2, 6.95), (1.55, 1.16, 1.45)))
+    shape = cut(shape, mirrored(ellipsoid((1.85, 163.1, 9.2), (0.75, 0.9, 1.4))), 0.8)  # beside the nose
+    lids = mirrored(ellipsoid((3.2, 163.2, 6.9), (1.55, 1.16, 1.35)))
     shape = join(shape, (lids, 0.55))
     wide = 1.0 if strong else 0.88
     up = 0.0 if strong else 0.25
-    bridge = capsule((0, 164.2, 8.55), (0, 160.5 + up, 10.35 - 0.6 * up), 0.62 * wide, 0.82 * wide)
-    tip = ellipsoid((0, 160.15 + up, 10.4 - 0.4 * up), (1.0 * wide, 0.85, 1.0))
-    wing = mirrored(ellipsoid((1.12 * wide, 159.8 + 0.6 * up, 9.55), (0.62 * wide, 0.64, 0.9)))
+    bridge = capsule((0, 164.2, 8.6), (0, 160.5 + up, 10.4 - 0.6 * up), 0.56 * wide, 0.72 * wide)
+    tip = ellipsoid((0, 160.05 + up, 10.4 - 0.4 * up), (0.88 * wide, 0.82, 1.0))
+    wing = mirrored(ellipsoid((1.12 * wide, 159.8 + 0.6 * up, 9.55), (0.58 * wide, 0.62, 0.85)))
     shape = join(shape, (bridge, 1.5), (tip, 0.9), (wing, 0.55))
     nostril = mirrored(ellipsoid((0.58 * wide, 159.1 + 0.8 * up, 9.95), (0.36, 0.3, 0.5)))
     shape = cut(shape, nostril, 0.3)
@@ -181,9 +186,10 @@ def _face(female: bool) -> Field:
     upper = both_sides(ellipsoid((0.62, 157.42, 9.08), (1.35, 0.42 * full, 0.72)), 0.5)
     lower = ellipsoid((0, 156.5, 8.98), (1.75, 0.52 * full, 0.8))
     shape = join(shape, (upper, 0.6), (lower, 0.6))
+    above_lip = ellipsoid((0, 158.35, 8.55), (1.9, 1.0, 0.85))
+    shape = join(shape, (above_lip, 1.2))
     philtrum = capsule((0, 159.0, 9.75), (0, 158.0, 9.85), 0.22, 0.2)
-    shape = cut(shape, philtrum, 0.5)
-    return join(shape, (_ear(), 0.5))
+    return cut(shape, philtrum, 0.5)
 
 
 def _ear() -> Field:
@@ -197,11 +203,14 @@ def _ear() -> Field:
     out = out if out[0] > 0 else -out
     axes = np.stack([out, up, back])
     centre = np.array([7.7, 162.0, -0.9])
-    disc = ellipsoid(centre, (0.7, 2.95, 1.7), axes)
-    lobe = ellipsoid(centre - 2.5 * up - 0.5 * back, (0.5, 0.85, 0.75), axes)
-    hollow = ellipsoid(centre + 0.75 * out - 0.3 * up - 0.35 * back, (0.85, 1.6, 0.95), axes)
-    groove = ellipsoid(centre + 0.8 * out + 1.35 * up + 0.15 * back, (0.6, 1.15, 0.95), axes)
-    ear = cut(cut(join(disc, (lobe, 0.6)), hollow, 0.35), groove, 0.3)
+    upper = ellipsoid(centre + 0.95 * up + 0.1 * back, (0.62, 2.05, 1.85), axes)
+    lower = ellipsoid(centre - 0.7 * up - 0.15 * back, (0.6, 2.0, 1.35), axes)
+    lobe = ellipsoid(centre - 2.45 * up - 0.45 * back, (0.45, 0.8, 0.7), axes)
+    hollow = ellipsoid(centre + 0.75 * out - 0.55 * up - 0.4 * back, (0.85, 1.25, 0.85), axes)
+    groove = ellipsoid(centre + 0.72 * out + 1.2 * up + 0.15 * back, (0.5, 1.25, 1.2), axes)
+    fold = capsule(centre + 0.25 * out - 1.5 * up + 0.55 * back, centre + 0.2 * out + 1.2 * up + 0.55 * back, 0.3, 0.25)
+    ear = cut(join(upper, (lower, 0.9), (lobe, 0.6)), groove, 0.3)
+    ear = cut(join(ear, (fold, 0.3)), hollow, 0.35)
     return mirrored(ear)
 
 

@@ -18,10 +18,15 @@ from stimuli.body_generator.figure import Figure
 from stimuli.body_generator.polygons import settled
 from stimuli.skeleton import Floats
 
-# place across the palm (towards the thumb), length, radius, bend at the knuckle in degrees; index to little finger
-_FINGERS = ((2.75, 7.3, 0.84, 30.0), (0.95, 8.0, 0.87, 33.0), (-0.9, 7.5, 0.83, 37.0), (-2.6, 5.9, 0.74, 42.0))
-_PHALANGES = (0.46, 0.30, 0.24)  # share of a finger's length
-_CURL = (0.0, 34.0, 24.0)  # degrees added at each finger joint
+# place across the palm (towards the thumb), phalanges, radius, bend at the knuckle in degrees; index to little finger.
+# Lengths of a hand of 19.3 cm after Buryanov & Kotiuk 2010 (Morphologie 94), who measured them on radiographs.
+_FINGERS = (
+    (3.08, (3.98, 2.24, 1.58), 0.96, 17.0),
+    (1.03, (4.46, 2.63, 1.74), 0.97, 21.0),
+    (-1.02, (4.14, 2.57, 1.73), 0.92, 26.0),
+    (-2.92, (3.27, 1.81, 1.60), 0.81, 32.0),
+)
+_CURL = (0.0, 30.0, 16.0)  # degrees added at each finger joint
 
 
 def arm(figure: Figure) -> Field:
@@ -35,7 +40,7 @@ def arm(figure: Figure) -> Field:
     elbow = shoulder + figure.upper_arm * along
     thin = figure.arm[3][3]
     point = ellipsoid(elbow - np.array([0, 0, 0.72 * thin]), (thin * 0.42, thin * 0.62, thin * 0.42))
-    return join(limb, (point, 1.6), (hand(figure), 2.6))
+    return join(limb, (point, 1.6), (hand(figure), 1.3))
 
 
 def hand(figure: Figure) -> Field:
@@ -45,44 +50,44 @@ def hand(figure: Figure) -> Field:
     thumb_side = np.array([0.0, 0.0, 1.0])
     inwards = np.array([-np.cos(np.radians(30)), -np.sin(np.radians(30)), 0.0])
     k = figure.hand_scale
-    slim = 0.90 if figure.female else 1.0
+    slim = 0.94 if figure.female else 1.0
 
     def at(s: float, t: float, m: float) -> Floats:
         return wrist + k * (s * along + t * thumb_side + m * inwards)
 
     palm_rows = [
-        (-2.6, 0.0, 0, 2.0, 2.0, 1.2, 1.2, 2.3),
-        (0.0, 0.0, 0, 2.7, 2.6, 1.5, 1.6, 2.4),
-        (2.5, 0.1, 0, 3.5, 3.4, 1.45, 1.75, 2.5),
-        (5.5, 0.1, 0, 4.0, 3.9, 1.3, 1.55, 2.6),
-        (8.5, 0.1, 0, 4.05, 3.9, 1.15, 1.3, 2.6),
-        (10.0, 0.1, 0, 3.8, 3.6, 0.95, 0.95, 2.5),
-        (10.8, 0.1, 0, 3.3, 3.1, 0.6, 0.5, 2.4),
+        (-2.4, 0.0, 0, 1.9, 1.9, 1.1, 1.1, 2.2),
+        (0.0, 0.0, 0, 2.45, 2.35, 1.45, 1.5, 2.3),
+        (2.5, 0.0, 0, 3.25, 3.15, 1.45, 1.55, 2.4),
+        (5.5, 0.05, 0, 3.95, 3.7, 1.25, 1.3, 2.5),
+        (8.0, 0.1, 0, 4.1, 3.85, 1.05, 1.1, 2.5),
+        (9.6, 0.1, 0, 3.8, 3.6, 0.8, 0.8, 2.4),
+        (10.2, 0.1, 0, 3.35, 3.15, 0.5, 0.5, 2.4),
     ]
     rows = [
         (s * k, cu * k, 0, a * k * slim, b * k * slim, c * k * slim, d * k * slim, n)
         for s, cu, _, a, b, c, d, n in palm_rows
     ]
     parts: list[tuple[Field, float]] = [
-        (ellipsoid(at(3.4, 2.4, 1.0), (1.9 * k, 2.9 * k, 1.5 * k)), 1.2),  # ball of the thumb
-        (ellipsoid(at(5.0, -2.4, 0.7), (1.4 * k, 2.6 * k, 1.4 * k)), 1.0),
+        (ellipsoid(at(3.6, 2.3, 1.0), (1.5 * k, 2.9 * k, 1.4 * k)), 1.2),  # ball of the thumb
+        (ellipsoid(at(4.6, -2.2, 0.7), (1.2 * k, 2.8 * k, 1.2 * k)), 1.0),
     ]
     palm = generalised_cylinder(wrist, along, thumb_side, rows, rounding=0.9)
-    for place, length, radius, bend in _FINGERS:
-        base = at(9.3 - 0.12 * abs(place - 0.9) ** 1.4, place, 0.1)
+    for place, phalanges, radius, bend in _FINGERS:
+        base = at(9.2 - 0.14 * abs(place - 0.9) ** 1.3, place * slim, 0.0)
         angle, tip = np.radians(bend), base
         r = radius * k * slim
-        fan = -0.02 * place  # towards each other, as in a hand at rest
-        for i, (share, curl) in enumerate(zip(_PHALANGES, _CURL, strict=True)):
+        fan = -0.025 * place  # towards each other, as in a hand at rest
+        for i, (length, curl) in enumerate(zip(phalanges, _CURL, strict=True)):
             angle += np.radians(curl)
             direction = np.cos(angle) * along + np.sin(angle) * inwards + fan * thumb_side
-            end = tip + k * length * share * direction
-            parts.append((capsule(tip, end, r * (1.0, 0.95, 0.9)[i], r * (0.95, 0.9, 0.74)[i]), 0.35 if i else 0.7))
+            end = tip + k * length * direction
+            parts.append((capsule(tip, end, r * (1.0, 0.96, 0.88)[i], r * (0.92, 0.88, 0.72)[i]), 0.25 if i else 0.55))
             tip = end
-    thumb = [at(2.2, 2.9, 0.9), at(5.5, 4.4, 2.0), at(8.3, 4.8, 2.9), at(10.5, 4.5, 3.5)]
+    thumb = [at(2.4, 2.6, 0.9), at(5.7, 4.2, 2.0), at(8.6, 4.9, 2.6), at(10.8, 5.0, 2.7)]
     for i in range(3):
-        radius = (1.25, 1.02, 0.9)[i] * k * slim
-        parts.append((capsule(thumb[i], thumb[i + 1], radius, radius * 0.86), 1.3 if i == 0 else 0.4))
+        radius = (1.2, 1.0, 0.92)[i] * k * slim
+        parts.append((capsule(thumb[i], thumb[i + 1], radius, radius * (0.86, 0.92, 0.76)[i]), 1.2 if i == 0 else 0.3))
     return join(palm, *parts)
 
 

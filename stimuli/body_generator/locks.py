@@ -11,6 +11,7 @@ from stimuli.body_generator.head import HeadFrame
 from stimuli.body_generator.polygons import Mesh, normals_of
 from stimuli.skeleton import Floats
 
+ROOT_UNDER, TIP_UNDER = 0.22, 0.10  # cm under the cap's surface, so that no lock begins or ends with a step
 STEPS = 8
 """Steps in which a lock is laid along the head at least; longer ones would leave a round head and float beside it."""
 
@@ -82,6 +83,7 @@ def _as_strips(
     taper = np.clip(0.55 + 1.2 * t, 0, 1) * np.sqrt(np.clip(1.04 - t, 0, 1))
     half = 0.5 * width[:, None, None] * taper[None, :, None]
     raised = (lift[:, None] * np.sin(np.pi * np.clip(0.05 + 0.85 * t, 0, 1))[None, :])[..., None]
+    raised = raised - (ROOT_UNDER * (1 - t) ** 6 + TIP_UNDER * t**6)[None, :, None]
     crest = path + normals * raised
     sunk = -0.20 - 0.1 * width[:, None, None]
     left, right = path - across * half + normals * sunk, path + across * half + normals * sunk

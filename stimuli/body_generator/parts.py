@@ -104,10 +104,10 @@ def parts_of(figure: Figure) -> tuple[tuple[Part, ...], Field]:
             (-12, neck_y - 12.5, -15),
             (12, figure.stature + 2, 15),
             0.38,
-            (4600, 1500, 330),
+            (4156, 1828, 326),
             plain=head(figure, grown(worn.chest, -0.7)),
             paint=beard_shadow(figure),
-            soft=0.3,
+            soft=0.4,
         ),
         part("arm", "skin", left_arm, arm_low, arm_high, 0.32, (1436, 480, 140), True),
         part(

@@ -36,15 +36,25 @@ vec3 raised(vec3 normal, vec3 gradient, vec3 place, vec3 world) {
     return normalize(abs(area) * normal - slope);
 }
 
-// kind: 1 knitted, 2 woven twill, 3 skin, 4 hair, 0 anything else. Changes the albedo and returns the normal.
+const float BEHIND = 0.0713;  // of the knot's height: how far behind the ear canals it lies
+const float HEAD = 0.09;      // m, roughly a head's radius
+
+// Coordinates in which a strand of hair runs along y: from the crown, or to the knot at this height (m) and down the tail.
+vec3 along_strands(vec3 place, float knot) {
+    vec3 from = knot > 0.0 ? (place - vec3(0.0, knot, -BEHIND * knot)).xzy : place - vec3(0.0, 0.0, -0.01);
+    if (knot > 0.0 && from.y < 0.0) return place;
+    float radius = max(length(from.xz), 0.004);
+    vec2 round_it = from.xz * (HEAD / radius);
+    return vec3(round_it.x, from.y - radius, round_it.y);
+}
+
+// kind: 1 knitted, 2 woven twill, 3 skin, 4 hair, 5 and more hair that is tied at kind - 5 m above the ground, 0 anything
+// else. Changes the albedo and returns the normal.
 vec3 fabric(float kind, vec3 place, vec3 world, vec3 normal, inout vec3 albedo) {
     if (close_up == 0.0 || kind == 0.0) return normal;
     float pixel = max(length(dFdx(place)), length(dFdy(place)));  // m
-    if (kind > 3.5) {  // strands, which run from the crown and hang
-        vec2 out_from_crown = place.xz - vec2(0.0, -0.01);
-        float radius = max(length(out_from_crown), 0.004);
-        vec2 round_it = out_from_crown * (0.09 / radius);
-        vec3 lie = vec3(round_it.x, place.y - radius, round_it.y);
+    if (kind > 3.5) {
+        vec3 lie = along_strands(place, kind - 5.0);
         float seen = clamp(1.5 - 450.0 * pixel, 0.0, 1.0);
         float strand = noise(lie * vec3(620.0, 9.0, 620.0)).w - 0.5;
         vec3 wide = vec3(150.0, 7.0, 150.0);
