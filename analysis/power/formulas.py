@@ -77,6 +77,10 @@ def power_rm_anova(
         reached = float(stats.ncf.sf(critical, df1, df2, noncentrality)) if noncentrality > 0 else alpha
         return {"lambda_": noncentrality, "df1": df1, "df2": df2, "F_critical": critical, "power": reached}
 
+    if groups < 1:
+        raise AnalysisError(f"groups is 1 or more, not {groups!r}.")
+    if n is not None and n <= groups:
+        raise AnalysisError(f"{n} participant(s) are too few for {groups} group(s); at least {groups + 1} are needed.")
     if n is None:
         assert size is not None
         assert power is not None
@@ -84,8 +88,6 @@ def power_rm_anova(
     elif size is None:
         assert power is not None
         size = _smallest_f(lambda f: row(n, f)["power"], power)
-    if n <= groups:
-        raise AnalysisError(f"{n} participants are too few for {groups} group(s).")
     result = pd.DataFrame(
         [
             {
@@ -145,9 +147,14 @@ def _smallest_f(power_of, wanted: float) -> float:  # type: ignore[no-untyped-de
 def power_t_test(d: float, n: int, n2: int | None = None, alpha: float = 0.05, tails: int = 2) -> pd.DataFrame:
     """Power of a t test for a standardised difference d: one-sample or paired, or two groups of n and n2.
 
-    Returns one row: d, n, n2, alpha, tails, ncp, df, t_critical, power.
+    tails: 2, or 1 for a difference expected to be above 0. Returns one row: d, n, n2, alpha, tails, ncp, df,
+    t_critical, power. Raises AnalysisError.
     """
     check_share("alpha", alpha, 0.05)
+    if not math.isfinite(d) or tails not in (1, 2):
+        raise AnalysisError(f"d is a finite number and tails 1 or 2, not {d!r} and {tails!r}.")
+    if n < 1 or (n2 is None and n < 2) or (n2 is not None and (n2 < 1 or n + n2 < 3)):
+        raise AnalysisError("A t test needs 2 participants, or 3 in two groups of at least 1.")
     df = n - 1 if n2 is None else n + n2 - 2
     ncp = d * math.sqrt(n if n2 is None else n * n2 / (n + n2))
     critical = float(stats.t.ppf(1 - alpha / tails, df))
@@ -176,9 +183,17 @@ def power_regression(
 ) -> pd.DataFrame:
     """Power of the F test of `tested` of the predictors (all by default) with Cohen's f2; lambda = f2 n.
 
-    Returns one row: f2, n, predictors, tested, alpha, lambda_, df1, df2, F_critical, power.
+    Returns one row: f2, n, predictors, tested, alpha, lambda_, df1, df2, F_critical, power. Raises AnalysisError.
     """
     check_share("alpha", alpha, 0.05)
+    if not 0 <= f2 < math.inf:
+        raise AnalysisError(f"f2 is a number from 0 up, not {f2!r}.")
+    if not 1 <= (predictors if tested is None else tested) <= predictors:
+        raise AnalysisError(f"Of {predictors} predictor(s), tested is from 1 up to all of them, not {tested!r}.")
+    if n < predictors + 2:
+        raise AnalysisError(
+            f"{n} cases are too few for {predictors} predictor(s); at least {predictors + 2} are needed."
+        )
     df1, df2 = predictors if tested is None else tested, n - predictors - 1
     critical = float(stats.f.ppf(1 - alpha, df1, df2))
     return pd.DataFrame(

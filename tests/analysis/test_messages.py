@@ -22,7 +22,9 @@ from analysis import (
     mixed_model,
     normality,
     pairwise,
+    power_regression,
     power_rm_anova,
+    power_t_test,
     proportions,
     psychometric,
     regression,
@@ -307,3 +309,22 @@ def test_a_mixed_model_without_a_remainder_is_refused() -> None:
     exact = data.assign(score=data["id"].str[1:].astype(int) * 0.3 + (data["cue"] == "valid") * 0.7 + 5)
     with pytest.raises(AnalysisError, match="explain 'score' without a remainder"):
         mixed_model(exact, "score", "id", "cue", "speed")
+
+
+@pytest.mark.parametrize(
+    ("impossible", "said"),
+    [
+        (lambda: power_t_test(0.5, 1), "needs 2 participants"),
+        (lambda: power_t_test(0.5, 1, 1), "3 in two groups"),
+        (lambda: power_t_test(math.nan, 20), "d is a finite number"),
+        (lambda: power_t_test(0.5, 20, tails=3), "tails 1 or 2"),
+        (lambda: power_regression(0.15, 6, 5), "6 cases are too few for 5 predictor"),
+        (lambda: power_regression(-0.1, 30, 2), "f2 is a number from 0 up"),
+        (lambda: power_regression(0.1, 30, 2, 3), "tested is from 1 up to all"),
+        (lambda: power_rm_anova(effect="within", measures=3, n=1, power=0.8), "1 participant.*at least 2"),
+        (lambda: power_rm_anova(effect="within", measures=3, n=20, f=0.2, groups=0), "groups is 1 or more"),
+    ],
+)
+def test_power_of_designs_that_cannot_be_is_a_sentence_instead_of_nothing(impossible: Any, said: str) -> None:
+    with pytest.raises(AnalysisError, match=said):
+        impossible()
