@@ -17,6 +17,7 @@ from analysis.errors import AnalysisError, check_share
 from analysis.planned.plan import AnalysisPlan
 from analysis.planned.plan_parts import TTestPlan
 from analysis.power.simulated_experiments import ExperimentModel, cell_means_of, experiment_model
+from analysis.statistics.linear_fit import NO_VARIANCE
 from analysis.statistics.many_anovas import many_anovas
 
 CHUNK = 250  # experiments at a time: about 10 MB
@@ -43,8 +44,10 @@ def power_by_simulation(
     Experiment k depends on the seed and k only, so any split gives the same counts.
 
     Returns one row per test with columns test ("anova", Greenhouse-Geisser, or "t"), name (effect, or
-    level), significant, experiments, power, ci_low, ci_high (95 %, Wilson). Post hoc tests,
-    exclusions and t tests of a factor outside the analysis of variance are not simulated. Raises AnalysisError.
+    level), significant, experiments, power, ci_low, ci_high (95 %, Wilson). A test of values without
+    variance (everybody at the end of the scale) has no p, as in the analysis, and counts as not significant.
+    Post hoc tests, further tests, exclusions and t tests of a factor outside the analysis of variance are
+    not simulated. Raises AnalysisError.
     """
     check_share("alpha", alpha, 0.05)
     part, parts = shard
@@ -131,7 +134,7 @@ def _count(job: tuple[ExperimentModel, int, range, float]) -> np.ndarray:
 
 
 def _t_p(values: np.ndarray, model: ExperimentModel, factor: str, level: str, against: float) -> np.ndarray:
-    """(S,) p values of the one-sample t test of participants' means at one level."""
+    """(S,) p values of the one-sample t test of participants' means at one level; nan where all means are equal."""
     if factor in model.design.within:
         names = list(model.design.within)
         shape = [len(levels) for levels in model.design.within.values()]
@@ -142,6 +145,7 @@ def _t_p(values: np.ndarray, model: ExperimentModel, factor: str, level: str, ag
         column = list(model.design.between).index(factor)
         members = model.design.groups[:, column] == model.design.between[factor].index(level)
         people = values[:, members].mean(axis=2)
-    n = people.shape[1]
-    t = (people.mean(axis=1) - against) / (people.std(axis=1, ddof=1) / np.sqrt(n))
+    n, spread = people.shape[1], people.std(axis=1, ddof=1)
+    spread[spread**2 * (n - 1) <= NO_VARIANCE * np.sum(people**2, axis=1)] = np.nan
+    t = (people.mean(axis=1) - against) / (spread / np.sqrt(n))
     return 2 * special.stdtr(n - 1, -np.abs(t))

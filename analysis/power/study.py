@@ -13,6 +13,7 @@ from typing import Any
 import pandas as pd
 
 from analysis.errors import AnalysisError, listed
+from analysis.planned.further_tests import planned_tests
 from analysis.planned.plan import plan_of
 from analysis.power.simulated_adjusters import Adjusters
 from analysis.power.simulated_experiments import experiment_model
@@ -112,7 +113,12 @@ def power_notes(study: Mapping[str, Any] | str | Path) -> list[str]:
     """What a reader of the table must know: where the range of the task cuts answers off, what is not simulated."""
     loaded = as_dict(study)
     model = experiment_model(loaded)
-    notes = ["Post hoc tests, equivalence tests and exclusions are not simulated."]
+    others = [name.removeprefix("The ").replace("t tests", "other t tests") for name, _ in planned_tests(model.plan)]
+    others += [f"the tests of {plan.measure}" for plan in model.plan.also]
+    notes = [
+        f"Only the ANOVA and the t tests against values are simulated, not {listed(['post hoc tests', *others])}; "
+        "nothing is excluded, and a test of values without variance counts as not significant."
+    ]
     left = [test.each for test in model.plan.t_tests if test not in simulated_t_tests(model.plan)]
     if left:
         notes.append(

@@ -9,6 +9,9 @@ import numpy as np
 from analysis.statistics.cells import CellMeans
 from analysis.statistics.contrasts import subsets, sum_to_zero
 
+NO_VARIANCE = 1e-26
+"""Share of a sum of squares under which a part of it is rounding noise: about a thousand roundings, squared."""
+
 
 @dataclass(frozen=True)
 class LinearFit:
@@ -23,8 +26,8 @@ class LinearFit:
 
     @property
     def no_variance_below(self) -> float:
-        """A sum of squares under this is rounding noise: about a thousand roundings, squared."""
-        return 1e-26 * self.scale
+        """A sum of squares under this is rounding noise."""
+        return NO_VARIANCE * self.scale
 
 
 def fit(means: CellMeans) -> LinearFit:

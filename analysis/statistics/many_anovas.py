@@ -7,14 +7,15 @@ from scipy import special
 
 from analysis.statistics.cells import CellMeans
 from analysis.statistics.contrasts import subsets, within_contrasts
-from analysis.statistics.linear_fit import design_matrix
+from analysis.statistics.linear_fit import NO_VARIANCE, design_matrix
 
 
 def many_anovas(values: np.ndarray, design: CellMeans) -> dict[str, np.ndarray]:
     """Greenhouse-Geisser p values of every effect in every experiment.
 
     values: (S, N, c) cell means of S experiments; design: the participants' groups and the factors (its
-    own values are not used). Returns effect name -> (S,) p values, equal to those of `anova`.
+    own values are not used). Returns effect name -> (S,) p values, equal to those of `anova`; nan where an
+    effect has no error variance.
     """
     X, terms = design_matrix(design)
     inverse = np.linalg.inv(X.T @ X)
@@ -22,6 +23,7 @@ def many_anovas(values: np.ndarray, design: CellMeans) -> dict[str, np.ndarray]:
     df = X.shape[0] - X.shape[1]
     B = project @ values
     E = values - X @ B
+    rounding = NO_VARIANCE * np.sum(values**2, axis=(1, 2))
     sizes = [len(levels) for levels in design.within.values()]
     strata = {}
     for chosen in subsets(tuple(design.within)):
@@ -29,6 +31,7 @@ def many_anovas(values: np.ndarray, design: CellMeans) -> dict[str, np.ndarray]:
         residuals = E @ C
         A = residuals.transpose(0, 2, 1) @ residuals
         trace = np.trace(A, axis1=1, axis2=2)
+        trace = np.where(trace > rounding, trace, np.nan)
         epsilon = trace**2 / (C.shape[1] * np.sum(A * A, axis=(1, 2)))
         strata[chosen] = B @ C, trace, epsilon, C.shape[1]
     found = {}

@@ -12,6 +12,7 @@ from analysis import AnalysisError, power_by_simulation
 from analysis.power.simulated_answers import Choosers, Raters
 from analysis.power.simulated_experiments import cell_means_of, experiment_model
 from analysis.power.simulation import as_dict
+from analysis.power.study import power_notes
 from experiment_app.simulated.behaviour import _shifted
 from protocols.study_file import read_study
 
@@ -101,3 +102,22 @@ def test_what_cannot_be_simulated_is_a_sentence(change, says):
         study["order"] = {"kind": "adaptive", "of": "speed", "yes": "correct == 1", "rule": {"kind": "staircase"}}
     with pytest.raises(AnalysisError, match=says):
         experiment_model(study)
+
+
+@pytest.mark.filterwarnings("error")
+def test_answers_without_variance_are_no_power():
+    """Everybody answers at the end of the scale: `gaitlab analyse` gives neither F nor t of such values."""
+    study = loaded("fourier_naturalness")
+    rating = {**study["simulation"]["rating"], "rating": -9, "spread": 0.1, "noise": 0.1}
+    tested = {**study["analysis"], "t_tests": [{"each": "style", "against": 2, "label": "middle of the scale"}]}
+    study = {**study, "analysis": tested, "simulation": {"rating": rating}}
+    table = power_by_simulation(study, experiments=20, participants=6)
+    assert set(table["test"]) == {"anova", "t"}
+    assert table["significant"].to_list() == [0] * len(table)
+
+
+def test_planned_tests_that_are_not_simulated_are_named():
+    study = loaded("crowd_variety")
+    assert any(
+        "not post hoc tests, aligned rank transform and the tests of response_time" in n for n in power_notes(study)
+    )
