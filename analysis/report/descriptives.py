@@ -68,6 +68,8 @@ def assumptions_section(results: PlannedResults) -> Markup:
 
 def descriptives_section(results: PlannedResults) -> Markup:
     data = results.descriptives
+    if not len(data):
+        return Markup("")
     unit, decimals = unit_cell(results)
     factors = [name for name in (*results.plan.within, *results.plan.between) if name in data]
     columns: dict[str, tuple[object, Cell]] = {

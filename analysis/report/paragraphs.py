@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from analysis.apa import degrees, mid_sentence, number, p_value, share, with_unit
 from analysis.errors import listed
@@ -52,8 +53,8 @@ def _is_number(value: object) -> bool:
 
 
 def methods_paragraphs(results: PlannedResults) -> list[str]:
-    """As they could stand in a Methods section: the analysis of variance, then the other tests."""
-    plan = results.plan
+    """As they could stand in a Methods section: the analysis of variance, then the other tests; only what was run."""
+    plan = _carried_out(results)
     first = _anova_methods(results) if plan.within or plan.between else []
     words: list[str] = []
     for test in plan.t_tests:
@@ -86,7 +87,30 @@ def methods_paragraphs(results: PlannedResults) -> list[str]:
         )
     if plan.normality and results.means is not None:
         first.append("Normality was assessed with Shapiro–Wilk tests of the residuals and of every cell.")
+    if plan != results.plan and not words and not first:
+        return ["None of the planned tests could be run."]
     return [" ".join(part) for part in (first, words) if part] or ["The study file plans no test."]
+
+
+def _carried_out(results: PlannedResults) -> AnalysisPlan:
+    """The plan without the tests that could not be run, of which a Methods section says nothing."""
+    plan, ran = results.plan, {test.kind for test in results.further}
+    tested = set(zip(results.ttests["factor"], results.ttests["reference"], strict=True))
+    return replace(
+        plan,
+        within=plan.within if results.means is not None else (),
+        between=plan.between if results.means is not None else (),
+        t_tests=tuple(test for test in plan.t_tests if (test.each, test.label) in tested),
+        comparisons=plan.comparisons if "comparisons" in ran else (),
+        pairs=plan.pairs if "pairs" in ran else (),
+        proportions=plan.proportions if "proportions" in ran else (),
+        d_prime=plan.d_prime if "d_prime" in ran else None,
+        psychometric=plan.psychometric if "psychometric" in ran else None,
+        equivalence=plan.equivalence if "equivalence" in ran else (),
+        regression=plan.regression if "regression" in ran else None,
+        rank_transform=plan.rank_transform if "aligned_rank_transform" in ran else None,
+        mixed_model=plan.mixed_model if "mixed_model" in ran else None,
+    )
 
 
 def choice_methods(plan: AnalysisPlan) -> list[str]:

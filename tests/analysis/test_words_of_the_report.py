@@ -51,13 +51,18 @@ analysis:
   pairs: [{factors: pace, by: viewing, adjust: holm}]
   equivalence: [{factor: pace, bound: 0.5}]
   aligned_rank_transform: {within: [pace]}
+  exclusions: EXCLUSIONS
 simulation:
   rating: {rating: {$pace: {slow: -5, middle: MIDDLE, fast: -5}}, spread: 0.3, noise: 0.3}
 """
 
 
-def run(folder: Path, middle: str, within: bool = True) -> tuple[AnalysisOutcome, str]:
-    study = STUDY.replace("MIDDLE", middle).replace("ANOVA", "within: [pace], between: [viewing]")
+def run(folder: Path, middle: str, within: bool = True, exclusions: str = "[]") -> tuple[AnalysisOutcome, str]:
+    study = (
+        STUDY.replace("MIDDLE", middle)
+        .replace("EXCLUSIONS", exclusions)
+        .replace("ANOVA", "within: [pace], between: [viewing]")
+    )
     if not within:
         study = re.sub(r"\n  (pairs|equivalence):.*", "", study).replace("within: [pace], between", "between")
     file = parse_study("floor.yaml", study)
@@ -112,6 +117,15 @@ def test_words_for_one_of_a_kind(tmp_path: Path, some: tuple[AnalysisOutcome, st
     assert "submitted to a one-way analysis of variance" in page
     assert re.search(r"Levene's test \(from the median\) (does not reject|rejects) them, F\(1, 10\) = ", page)
     assert re.search(r"Of 2 cells tested one by one, . ha(s|ve) p < .05; 0\.1 would be expected by chance", page)
+
+
+def test_the_methods_claim_only_what_was_run(tmp_path: Path) -> None:
+    """One level is left of the only factor within participants."""
+    outcome, page = run(tmp_path, "2", exclusions="[{where: pace != slow, reason: lost}]")
+    assert any("The analysis of variance cannot be run" in warning for warning in outcome.warnings)
+    for claim in ("analysis of variance", "Planned comparisons", "two one-sided tests", "aligned rank"):
+        assert claim not in page.split("Method\n")[1].split("Cell means")[0]
+    assert "None of the planned tests could be run." in page
 
 
 def test_a_test_that_leaves_somebody_out_says_so_beside_its_result() -> None:
