@@ -201,8 +201,8 @@ def test_exclusions_that_leave_no_trial_are_named_once_instead_of_a_complaint_pe
     outcome = analyse(write_study(tmp_path / "s", 3, text), tmp_path / "out")
     about = [warning for warning in outcome.warnings if "excluded" in warning]
     assert about == [
-        "All 288 trials are excluded, 288 by 'response_time > 0' (looked away), so nothing can be tested; correct the "
-        "exclusions in a copy of the study file, or record again."
+        "All 288 trials are excluded, 288 by 'response_time > 0' (looked away), so nothing can be tested. They are "
+        "all in trials.csv; correct the exclusions in the study file before more people take part."
     ]
     assert not any("no rows" in warning for warning in outcome.warnings)
     assert len(pd.read_csv(tmp_path / "out" / "trials.csv")) == 288
