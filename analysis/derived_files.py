@@ -79,6 +79,11 @@ def write_derived(
     return [out / name for name in written]
 
 
+def names_written(out: Path, made: Derivation) -> frozenset[str]:
+    """The names of the files of the kind that gaitlab wrote into `out`."""
+    return frozenset((_manifest(out, made) or ("", {}))[1])
+
+
 def remove_derived(out: Path, made: Derivation) -> None:
     """Removes everything of the kind that gaitlab wrote into `out`, and the folder when nothing else is in it."""
     _, files = _manifest(out, made) or ("", {})

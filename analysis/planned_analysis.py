@@ -15,15 +15,18 @@ from analysis.figures.checks import session_course
 from analysis.figures.drawing import DrawnFigure
 from analysis.figures.planned import draw
 from analysis.planned.computing import compute
-from analysis.planned.plan import read_plan
+from analysis.planned.plan import AnalysisPlan, read_plan
 from analysis.planned.results import PlannedResults
-from analysis.recorded.journal import read_study
+from analysis.recorded.journal import RecordedRun, read_study
 from analysis.recorded.trials import trials_table
 from analysis.report.headlines import headlines
 from analysis.report.latex import latex_tables
 from analysis.report.page import Drawn, report
 from analysis.statistics.marginal_means import emmeans_of, marginal_means
 from analysis.writing import table_bytes
+
+PLAN = "plan.yaml"
+"""Copy of the study file whose plan was followed, beside a report that follows another than the recorded one."""
 
 
 @dataclass(frozen=True)
@@ -41,11 +44,14 @@ class AnalysisOutcome:
         return next(path for path in self.paths if path.name == "report.html")
 
 
-def analyse(study_folder: Path, out: Path, unfinished: bool = False, over_edits: bool = False) -> AnalysisOutcome:
+def analyse(
+    study_folder: Path, out: Path, unfinished: bool = False, over_edits: bool = False, plan_text: str | None = None
+) -> AnalysisOutcome:
     """Run the analysis planned in the study file of the recorded runs, and write its results into `out`.
 
     study_folder: DATA/<study>, with one journal a run under sourcedata; unfinished: include runs that
-    were not finished; over_edits: replace also files of an earlier report that a person has changed.
+    were not finished; over_edits: replace also files of an earlier report that a person has changed; plan_text: a
+    study file whose plan is followed instead of that of the first run. A copy is kept beside the report, which says so.
     Writes trials.csv, cell_means.csv, descriptives.csv, anova.csv, posthoc.csv, ttests.csv, normality.csv,
     assumptions.csv, qq.csv, a table for each further planned test, tables.tex, the planned figures (PNG and
     SVG) and report.html; further measures get a folder each. Files of an earlier report of the same data are
@@ -63,9 +69,16 @@ def analyse(study_folder: Path, out: Path, unfinished: bool = False, over_edits:
             f"{study_folder}: none of the {recorded.journals} recorded runs can be analysed ({reasons})."
         )
     first = recorded.runs[0]
-    plan = read_plan(str(first.header.get("study_text", "")), first.name)
+    files: dict[str, bytes] = {}
+    stored = str(first.header.get("study_text", ""))
+    plan = read_plan(plan_text or stored, first.name if plan_text is None else PLAN)
+    if plan_text is not None and plan_text != stored:
+        files[PLAN] = plan_text.encode("utf-8")
+        recorded = replace(recorded, warnings=(_other_plan(first, plan, plan_text), *recorded.warnings))
+    elif len({run.header.get("study_hash") for run in recorded.runs}) > 1:
+        recorded = replace(recorded, warnings=(*recorded.warnings, _plan_of(first)))
     results = compute(recorded, plan, trials_table(recorded, plan))
-    files: dict[str, bytes] = {"trials.csv": table_bytes(_trials(results))}
+    files["trials.csv"] = table_bytes(_trials(results))
     drawn: dict[str, Drawn] = {}
     results = _of_one_measure(results, "", files, drawn)
     also = [_of_one_measure(other, f"{other.plan.measure}/", files, drawn) for other in results.also]
@@ -82,6 +95,29 @@ def analyse(study_folder: Path, out: Path, unfinished: bool = False, over_edits:
         tuple(headlines(results)),
         len(recorded.runs),
         results.simulated > 0,
+    )
+
+
+def _other_plan(first: RecordedRun, plan: AnalysisPlan, plan_text: str) -> str:
+    """The warning that a plan is followed which is not the recorded one; AnalysisError where it is of another study."""
+    from protocols.versions import what_differs
+
+    if plan.study != first.header.get("study"):
+        raise AnalysisError(
+            f"--plan: that is the study {plan.study}, and these are runs of {first.header.get('study')}; name a "
+            "version of the study file that they were recorded with."
+        )
+    places = what_differs(str(first.header.get("study_text", "")), plan_text)
+    return (
+        f"The plan followed is not the one that was recorded with {first.participant}'s run, but that of {PLAN} beside "
+        f"this report, which differs in {places}."
+    )
+
+
+def _plan_of(first: RecordedRun) -> str:
+    return (
+        f"The plan recorded with {first.participant}'s run is followed; gaitlab analyse --plan FILE follows that of "
+        "another version of the study file, and says so."
     )
 
 

@@ -6,12 +6,12 @@ import gc
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 from experiment_app.checking.check import check_names, checked_study, refuse_mistakes
 from experiment_app.console.asking import listening
@@ -21,7 +21,7 @@ from experiment_app.crash_note import crash_note, leave_note
 from experiment_app.crowds import plan_of
 from experiment_app.errors import RunError, UsageError
 from experiment_app.gaze.recording import gaze_watched, recording_gaze
-from experiment_app.imports import imported, other_imports
+from experiment_app.imports import other_imports
 from experiment_app.loop import run_session
 from experiment_app.markers.lsl import import_pylsl
 from experiment_app.markers.stream import announcing
@@ -36,6 +36,7 @@ from experiment_app.opening import (
     unfinished_run,
 )
 from experiment_app.participants.arrivals import first_headers
+from experiment_app.participants.earlier import refuse_another_study, tell_changes
 from experiment_app.run_folder import Run, check_participant
 from experiment_app.staging import crowd_of, making_of
 from experiment_app.terminal import typed
@@ -99,8 +100,11 @@ def run_live(
     check_participant(participant)
     file = checked_study(study)
     refuse_mixed(data, file.study.study, kind_of(False, pilot))
-    _tell_changes(first_headers(data, file.study.study), file, say)
+    headers = first_headers(data, file.study.study)
     old = None if new_run else unfinished_run(data, file.study.study, participant)
+    if old is None:
+        refuse_another_study(headers, file, data)
+    tell_changes(headers, file, say)
     if old is not None and seed is not None:
         raise UsageError(f"--seed: participant {participant} has an unfinished run, which keeps its own order.")
     if old is not None and not _continues(old, file, resume, ask, say):
@@ -156,18 +160,6 @@ def run_live(
             session = run_session(begin(opened.plan), heard, recording_gaze(told, gaze))
     _certify(opened.run, say)
     return _farewell(opened, command, session.ended, say)
-
-
-def _tell_changes(headers: Sequence[Mapping[str, Any]], file: StudyFile, say: Callable[[str], None]) -> None:
-    """Says who took part with another version of the study file, and with other imported actors, bodies or styles."""
-    others = [header["participant"] for header in headers if header["study_hash"] != file.hash]
-    if others:
-        say(f"Note: {', '.join(others[:5])} took part with another version of this study file.")
-    here = imported(file.study)
-    for name, sha256 in here.items():
-        others = [h["participant"] for h in headers if h.get("imported", {}).get(name, sha256) != sha256]
-        if others:
-            say(f"Note: {', '.join(others[:5])} saw another {name} than this computer has; copy its file from there.")
 
 
 def _certify(run: Run, say: Callable[[str], None]) -> None:

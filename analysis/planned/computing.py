@@ -102,7 +102,7 @@ def _all_excluded(trials: pd.DataFrame, plan: AnalysisPlan) -> str:
     each = [f"{row.trials} by {row.where!r} ({row.reason})" for row in counts[counts["trials"] > 0].itertuples()]
     return (
         f"All {len(trials)} trials are excluded, {listed(each)}, so nothing can be tested. They are all in "
-        "trials.csv; correct the exclusions in the study file before more people take part."
+        "trials.csv; correct the exclusions in a copy of the study file and name it with --plan."
     )
 
 

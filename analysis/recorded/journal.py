@@ -198,12 +198,13 @@ def _first_of_each(runs: list[RecordedRun]) -> tuple[list[RecordedRun], list[tup
 
 def _disagreements(runs: list[RecordedRun]) -> list[str]:
     found = []
-    hashes = dict.fromkeys(run.header.get("study_hash") for run in runs)
-    if len(hashes) > 1:
-        odd = [run.participant for run in runs if run.header.get("study_hash") != next(iter(hashes))]
+    versions: dict[str, list[RecordedRun]] = {}
+    for run in runs:
+        versions.setdefault(str(run.header.get("study_hash")), []).append(run)
+    if len(versions) > 1:
         found.append(
-            f"The runs were recorded with {len(hashes)} versions of the study file; the plan stored with "
-            f"{runs[0].participant}'s run is followed. {listed(odd)} had another version."
+            f"The runs were recorded with {len(versions)} versions of the study file. "
+            + " ".join(_version(same, runs[0]) for same in list(versions.values())[1:])
         )
     found += _other_imports(runs)
     pilot = [run.participant for run in runs if run.header.get("pilot")]
@@ -216,6 +217,15 @@ def _disagreements(runs: list[RecordedRun]) -> list[str]:
             f"{'is' if len(simulated) == 1 else 'are'} simulated. Keep them in separate data folders."
         )
     return found
+
+
+def _version(runs: Sequence[RecordedRun], first: RecordedRun) -> str:
+    """Who had a version of the study file other than the first run's, and in what it differs."""
+    from protocols.versions import what_differs
+
+    places = what_differs(str(first.header.get("study_text", "")), str(runs[0].header.get("study_text", "")))
+    who = listed([run.participant for run in runs])
+    return f"That of {who} differs from {first.participant}'s in {places}."
 
 
 def _other_imports(runs: Sequence[RecordedRun]) -> list[str]:

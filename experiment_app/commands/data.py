@@ -129,16 +129,18 @@ def withdraw(
 
 def _make_again(folder: Path, made: Derived) -> None:
     """Makes an export or a report again from the journals that are left; removes one nobody is left in."""
-    from analysis.derived_files import export_of, remove_derived, report_of
+    from analysis.derived_files import export_of, names_written, remove_derived, report_of
     from analysis.exports.exporting import export as write_export
-    from analysis.planned_analysis import analyse
+    from analysis.planned_analysis import PLAN, analyse
     from experiment_app.participants.arrivals import journals
 
     folder_of_it = Path(made.out)
     if not journals(folder):
         remove_derived(folder_of_it, report_of({}) if made.what == "report" else export_of({}))
     elif made.what == "report":
-        analyse(folder, folder_of_it, over_edits=True)
+        own_plan = PLAN in names_written(folder_of_it, report_of({}))
+        plan = (folder_of_it / PLAN).read_bytes().decode("utf-8") if own_plan else None
+        analyse(folder, folder_of_it, over_edits=True, plan_text=plan)
     else:
         write_export(folder, made.to, folder_of_it, over_edits=True)
 

@@ -19,13 +19,25 @@ def analyse(
     out_folder: Annotated[Path, Parameter(name="--out", help="Folder for tables, figures and report.")] = Path(
         "report"
     ),
+    plan: Annotated[
+        str | None,
+        Parameter(
+            help="A version of the study file whose plan is followed, instead of the one recorded with the runs."
+        ),
+    ] = None,
 ) -> int:
-    """Follow the study file's planned analysis: tables, figures and one self-contained report."""
+    """Follow the study file's planned analysis: tables, figures and one self-contained report.
+
+    The study file is kept with every run, so the plan is the one made before the data. The report says when --plan
+    names another.
+    """
     from analysis.planned_analysis import analyse as planned_analysis
     from experiment_app.participants.derived import note_derived
+    from protocols.study_file import read_study
 
+    plan_text = None if plan is None else read_study(plan).text
     with out.status("Analysing"):
-        outcome = planned_analysis(folder, out_folder)
+        outcome = planned_analysis(folder, out_folder, plan_text=plan_text)
     for warning in outcome.warnings:
         problems.print(f"Note: {warning}", style="yellow", markup=False)
     for sentence in outcome.headlines:

@@ -15,14 +15,17 @@ import pytest
 
 from experiment_app import opening
 from experiment_app.errors import RunError, UsageError
+from experiment_app.live import ScreenOptions, run_live
 from experiment_app.loop import run_session
 from experiment_app.opening import open_new
+from experiment_app.participants.arrivals import first_headers
+from experiment_app.participants.earlier import tell_changes
 from experiment_app.run_folder import participant_runs
 from experiment_app.simulated.observer import SimulatedParticipant, draw_observer
 from experiment_app.windows.undrawn import UndrawnWindow
 from protocols.events import Closed
 from protocols.session import begin
-from protocols.study_file import parse_study
+from protocols.study_file import parse_study, read_study
 from tests.experiment_app.sessions import opened, play
 from tests.protocols.studies import changed, short
 
@@ -213,8 +216,6 @@ def interrupted_once(data: Path, policy: str):
 def test_a_run_that_its_study_does_not_let_go_on_is_refused_before_a_window_opens(
     tmp_path, monkeypatch, policy, reason
 ):
-    from experiment_app.live import ScreenOptions, run_live
-
     monkeypatch.setattr(opening, "_utc_now", lambda: "2020-01-01T00:00:00Z")
     file = interrupted_once(tmp_path / "data", policy)
     (tmp_path / "s.yaml").write_text(file.text, encoding="utf-8")
@@ -239,6 +240,42 @@ def test_real_pilot_and_simulated_runs_never_share_a_folder(tmp_path, first, sec
     begin_one("P02", first)
     with pytest.raises(UsageError, match=f"holds {first} participants .*{second} ones must not be mixed"):
         begin_one("P03", second)
+
+
+@pytest.mark.parametrize(
+    ("study", "why"),
+    [
+        ("speed_editing", "its task is adjustment, here choice"),
+        ("walk_ratio_actors", "its factors are actor, speed, start, here"),
+    ],
+)
+def test_another_study_of_the_same_name_is_refused_before_a_window_opens_but_its_runs_go_on(tmp_path, study, why):
+    open_new(short(), "P01", tmp_path, display={}, simulated=False).journal.close()
+    text = read_study(study).text.replace(f"study: {study}", "study: walk_ratio")
+    (tmp_path / "s.yaml").write_text(text, encoding="utf-8")
+    said: list[str] = []
+
+    def sits_down(participant: str) -> str:
+        with pytest.raises(UsageError) as refused:
+            run_live(
+                str(tmp_path / "s.yaml"), participant, tmp_path, screen=ScreenOptions(display=99), seed=None,
+                new_run=False, resume="yes", ask=lambda _: True, say=said.append,
+            )  # fmt: skip
+        return str(refused.value)
+
+    assert f"holds another study of that name (P01: {why}" in sits_down("P02")
+    assert "another study" not in sits_down("P01")  # goes on with the study it was begun with
+    assert said[-1] == "The study file has changed since; the run goes on with the study it was begun with."
+
+
+def test_who_took_part_with_another_version_of_the_study_file_is_told_with_what_differs(tmp_path):
+    file = parse_study("s.yaml", short().text.replace("about half", "roughly half"))
+    for participant in ("P01", "P02"):
+        open_new(short(), participant, tmp_path, display={}, simulated=False).journal.close()
+    said: list[str] = []
+    tell_changes(first_headers(tmp_path, "walk_ratio"), file, said.append)
+    tell_changes(first_headers(tmp_path, "walk_ratio"), short(), said.append)
+    assert said == ["Note: P01, P02 took part with another version of this study file, which differs in pages.consent."]
 
 
 @pytest.mark.slow

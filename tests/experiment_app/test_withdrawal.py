@@ -16,6 +16,7 @@ from experiment_app.participants.withdrawal import plan_withdrawal
 from experiment_app.run_folder import participant_runs
 from protocols.record import decode_line
 from tests.experiment_app.sessions import opened, play
+from tests.protocols.studies import short
 
 
 @pytest.fixture
@@ -156,3 +157,14 @@ def test_copies_inside_the_folder_of_data_go_too(data, tmp_path, copy):
     assert run(["withdraw", str(data), "--participant", "WITHDRAWN77", "--yes"]) == 0
     assert holding(tmp_path, b"WITHDRAWN77") == []
     assert sorted(path.name for path in (data / "sourcedata").iterdir()) == ["sub-P01", "sub-P03"]
+
+
+def test_a_report_by_another_plan_is_made_again_by_that_plan(data, tmp_path):
+    text = short().text.replace("  normality: shapiro_wilk", "  aligned_rank_transform: {within: [actor, start]}")
+    (tmp_path / "later.yaml").write_text(text, encoding="utf-8")
+    report = tmp_path / "report"
+    assert run(["analyse", str(data), "--out", str(report), "--plan", str(tmp_path / "later.yaml")]) == 0
+    assert run(["withdraw", str(data), "--participant", "WITHDRAWN77", "--yes"]) == 0
+    assert (report / "aligned_rank_transform.csv").exists()
+    assert (report / "plan.yaml").read_text(encoding="utf-8") == text
+    assert "that of plan.yaml beside this report" in (report / "report.html").read_text(encoding="utf-8")
