@@ -202,7 +202,7 @@ def test_exclusions_that_leave_no_trial_are_named_once_instead_of_a_complaint_pe
     about = [warning for warning in outcome.warnings if "excluded" in warning]
     assert about == [
         "All 288 trials are excluded, 288 by 'response_time > 0' (looked away), so nothing can be tested. They are "
-        "all in trials.csv; correct the exclusions in the study file before more people take part."
+        "all in trials.csv; correct the exclusions in a copy of the study file and name it with --plan."
     ]
     assert not any("no rows" in warning for warning in outcome.warnings)
     assert len(pd.read_csv(tmp_path / "out" / "trials.csv")) == 288
@@ -334,3 +334,19 @@ def test_other_plans_than_the_thesis_run_as_well(name: str, tmp_path: Path) -> N
     drawn = [path for path in outcome.paths if path.suffix == ".png"]
     assert len(drawn) == (2 if "x axis" in name else 1)
     assert any("figure was not drawn" in w for w in outcome.warnings) == (name == "within only, nothing else")
+
+
+def test_a_plan_made_later_is_followed_on_request_and_the_report_says_what_differs(tmp_path: Path) -> None:
+    folder = write_study(tmp_path / "s", 3)
+    later = study_text().replace("  normality: shapiro_wilk\n", "")
+    outcome = analyse(folder, tmp_path / "out", plan_text=later)
+    assert outcome.warnings[0] == (
+        "The plan followed is not the one that was recorded with P01's run, but that of plan.yaml beside this report, "
+        "which differs in analysis.normality."
+    )
+    assert (tmp_path / "out" / "plan.yaml").read_text(encoding="utf-8") == later
+    same = analyse(folder, tmp_path / "out", plan_text=study_text())
+    assert not any("plan" in warning for warning in same.warnings)
+    assert not (tmp_path / "out" / "plan.yaml").exists()
+    with pytest.raises(AnalysisError, match="that is the study other, and these are runs of walk_ratio"):
+        analyse(folder, tmp_path / "out", plan_text=later.replace("study: walk_ratio", "study: other"))
