@@ -207,7 +207,7 @@ def test_the_tasks_makings_and_tables_of_the_study_file_page_are_accepted():
 def test_every_command_of_the_data_page_runs_in_order(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     commands = [line for block in blocks(ROOT / "docs" / "data.md", "sh") for line in block.splitlines()]
-    assert len(commands) == 5
+    assert len(commands) == 7
     for command in commands:
         assert run(shlex.split(command)[1:]) == 0, (command, capfd.readouterr())
     assert (tmp_path / "tables" / "trace.csv").stat().st_size > 10_000
