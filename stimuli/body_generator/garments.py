@@ -117,7 +117,7 @@ def _shirt_solid(figure: Figure, trousers: Field, hem: float) -> Field:
     else:
         chest = both_sides(ellipsoid((8.2, shoulder[1] - 10.5, 6.4), (8.4, 6.4, 3.2)), 2.5)
         chest_blend = 6.0
-    worn = join(trunk, (mirrored(yoke), 7.0), (chest, chest_blend), (mirrored(blade), 4.0), (mirrored(sleeve), 5.5))
+    worn = join(trunk, (mirrored(yoke), 7.0), (chest, chest_blend), (mirrored(blade), 4.0), (mirrored(sleeve), 2.8))
     end = figure.shirt[0][0]
 
     def field(points: Floats) -> Floats:

@@ -201,8 +201,8 @@ def _ponytail(skull: Field) -> Style:
     tail = join(
         capsule((0, 165.2, -10.8), (0, 165.8, -13.2), 1.5, 1.7),
         (capsule((0, 165.6, -13.2), (0, 161.7, -15.2), 1.6, 2.2), 2.5),
-        (capsule((0, 161.7, -15.2), (0, 152.2, -15.2), 2.2, 1.7), 2.5),
-        (capsule((0, 152.2, -15.2), (0, 146.2, -13.8), 1.7, 0.6), 2.0),
+        (capsule((0, 161.7, -15.2), (0, 152.6, -15.3), 2.1, 1.5), 2.5),
+        (capsule((0, 152.6, -15.3), (0, 144.6, -14.2), 1.5, 0.2), 2.0),
     )
     volume = join(_cap(line, thickness), (tail, 0.7))
 
@@ -217,7 +217,7 @@ def _ponytail(skull: Field) -> Style:
         return np.where(behind, 7.5, 6.0), np.where(behind, 1.3, 1.1), np.where(behind, 0.22, 0.09)
 
     def ends(p: Floats) -> Floats:
-        return np.where(p[:, 2] < -11, 146.9 - p[:, 1], 0.7 - line.above(p))
+        return np.where(p[:, 2] < -11, 146.0 - p[:, 1], 0.7 - line.above(p))
 
     return Style(line, tail, volume, flow, 168, shape, ends)
 
