@@ -8,7 +8,7 @@ import pandas as pd
 
 from analysis.errors import AnalysisError
 from analysis.statistics.cells import names_of
-from analysis.statistics.columns import numbers, require
+from analysis.statistics.columns import numbers, numeric_label, require, require_filled, require_other_names
 
 GRAVITY = 9.81  # m/s²
 
@@ -55,10 +55,15 @@ def confusion_rate(data: pd.DataFrame, chosen: str, original: str, by: str | lis
     """Percentage of trials in which the copy was taken for the original, per combination of `by`.
 
     chosen, original: columns holding what was chosen and what was captured. 50 is chance: the copy
-    cannot be told from the original. Returns the columns of `by`, trials and confusion_rate (%).
+    cannot be told from the original. Trials without an answer are left out. Returns the columns of `by`,
+    trials and confusion_rate (%).
     """
     require(data, [chosen, original, *names_of(by)])
-    wrong = data.assign(_wrong=(data[chosen].astype(str) != data[original].astype(str)).astype(float) * 100)
+    require_other_names(names_of(by), ("trials", "confusion_rate"))
+    require_filled(data, names_of(by))
+    differ = data[chosen].map(numeric_label) != data[original].map(numeric_label)
+    answered = data[chosen].notna() & data[original].notna()
+    wrong = data.assign(_wrong=100.0 * differ).loc[answered]
     grouped = wrong.groupby(list(names_of(by)), sort=True, observed=True)["_wrong"]
     return grouped.agg(trials="count", confusion_rate="mean").reset_index()
 
@@ -70,9 +75,10 @@ def gaze_shares(data: pd.DataFrame, subject: str, part: str, duration: str | Non
     lengths when left out). Returns columns subject, part, share (%), summing to 100 per participant.
     """
     require(data, [subject, part, *([duration] if duration else [])])
+    require_other_names((subject, part), ("share",))
     time = pd.Series(numbers(data, duration), index=data.index) if duration else pd.Series(1.0, index=data.index)
-    seen = pd.DataFrame({subject: data[subject], part: data[part], "time": time})
-    totals = seen.pivot_table(index=subject, columns=part, values="time", aggfunc="sum", fill_value=0.0)
+    seen = pd.DataFrame({subject: data[subject], part: data[part], "_time": time})
+    totals = seen.pivot_table(index=subject, columns=part, values="_time", aggfunc="sum", fill_value=0.0)
     shares = totals.div(totals.sum(axis=1), axis=0) * 100
     return shares.stack().rename("share").reset_index()
 

@@ -59,8 +59,12 @@ def assumptions(
 
 
 def quantiles(values: Sequence[float] | np.ndarray) -> pd.DataFrame:
-    """Data of a Q-Q plot: theoretical (standard normal, Blom's positions) and ordered, standardised values."""
+    """Data of a Q-Q plot: theoretical (standard normal, Blom's positions) and ordered, standardised values.
+
+    Missing values are left out. Raises AnalysisError.
+    """
     ordered = np.sort(np.asarray(values, dtype=float))
+    ordered = ordered[~np.isnan(ordered)]
     n = len(ordered)
     if n < 3 or ordered.std() == 0:
         raise AnalysisError("A Q-Q plot needs at least 3 values that differ.")

@@ -80,6 +80,24 @@ def require(data: pd.DataFrame, names: Sequence[str]) -> None:
         raise AnalysisError("The table has no rows.")
 
 
+def require_different(**named: str | None) -> None:
+    """The columns play different parts: none is named twice. Raises AnalysisError."""
+    given = [name for name in named.values() if name is not None]
+    twice = [name for name in dict.fromkeys(given) if given.count(name) > 1]
+    if twice:
+        raise AnalysisError(
+            f"{listed(map(repr, twice))} is named twice, among {listed(named)}; they are different columns."
+        )
+
+
+def require_filled(data: pd.DataFrame, names: Iterable[str]) -> None:
+    """Every row has a label in each of these columns, or a sentence that says which has none."""
+    for name in names:
+        gaps = np.flatnonzero(data[name].isna().to_numpy())
+        if gaps.size:
+            raise AnalysisError(f"Column {name!r} is empty in row {gaps[0] + 1} ({gaps.size} such row(s)); fill it in.")
+
+
 def require_other_names(factors: Iterable[str], taken: Iterable[str]) -> None:
     """No factor is called as a column of the result, which would overwrite its levels. Raises AnalysisError."""
     columns = set(taken)

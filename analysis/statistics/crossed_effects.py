@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 from scipy import special, stats
 
-from analysis.errors import AnalysisError, check_share
+from analysis.errors import AnalysisError, check_share, listed
 from analysis.statistics.cells import Levels, names_of
 from analysis.statistics.columns import labels, numbers, require, require_no_colon
 from analysis.statistics.contrasts import subsets, sum_to_zero
@@ -52,6 +52,10 @@ def mixed_model(
     require_no_colon((*names, *numeric))
     if subject == stimulus:
         raise AnalysisError(f"{subject!r} is named as participant and as stimulus; name the column of each.")
+    roles = [dv, subject, stimulus, *names, *numeric]
+    twice = [name for name in dict.fromkeys(roles) if roles.count(name) > 1]
+    if twice:
+        raise AnalysisError(f"{listed(map(repr, twice))} is named twice; a stimulus, a factor and a covariate differ.")
     y = numbers(data, dv)
     X, terms, columns = _fixed(data, names, numeric, levels)
     random = [labels(data, subject), labels(data, stimulus)]

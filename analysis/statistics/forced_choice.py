@@ -10,7 +10,7 @@ from scipy import special, stats
 
 from analysis.errors import AnalysisError, check_share
 from analysis.statistics.cells import names_of
-from analysis.statistics.columns import numbers, require, require_other_names
+from analysis.statistics.columns import numbers, require, require_filled, require_other_names
 
 PROPORTIONS = ("k", "n", "proportion", "chance", "p", "exact_low", "exact_high", "wilson_low", "wilson_high")
 SENSITIVITIES = (
@@ -32,7 +32,7 @@ def proportions(
 
     successes: a column of 0 and 1 (one row per trial), or of counts out of the column `trials`.
     All rows of a combination are pooled, which is right for one participant or one answer each; to
-    generalise over participants, test their proportions with `t_tests`.
+    generalise over participants, test their proportions with `t_tests`. Rows without an answer are left out.
 
     Returns the columns of `by`, k, n, proportion, chance, p (exact binomial, two-sided), exact_low,
     exact_high (Clopper & Pearson 1934), wilson_low, wilson_high (Wilson 1927).
@@ -42,12 +42,17 @@ def proportions(
     by = names_of(by)
     require(data, [successes, *([trials] if trials else []), *by])
     require_other_names(by, PROPORTIONS)
+    require_filled(data, by)
     counts = pd.DataFrame({name: data[name] for name in by})
     counts["k"] = numbers(data, successes)
     counts["n"] = numbers(data, trials) if trials else 1.0
     counts = counts.dropna(subset=["k", "n"])
-    if ((counts["k"] < 0) | (counts["k"] > counts["n"]) | (counts["k"] % 1 != 0)).any():
+    whole = (counts["k"] % 1 == 0) & (counts["n"] % 1 == 0)
+    if ((counts["k"] < 0) | (counts["k"] > counts["n"]) | ~whole).any():
         raise AnalysisError(f"{successes!r} must hold 0 and 1, or whole counts of at most {trials or 'the trials'!r}.")
+    counts = counts[counts["n"] > 0]
+    if not len(counts):
+        raise AnalysisError(f"{successes!r} has no trials, so there is no share to test.")
     grouped = counts.groupby(list(by), sort=True, observed=True) if by else [((), counts)]
     rows = []
     for names, part in grouped:
@@ -72,6 +77,7 @@ def d_prime(data: pd.DataFrame, signal: str, answer: str, *, by: str | Sequence[
     by = names_of(by)
     require(data, [signal, answer, *by])
     require_other_names(by, SENSITIVITIES)
+    require_filled(data, [signal, answer, *by])
     table = pd.DataFrame({name: data[name] for name in by})
     table["_signal"], table["_answer"] = numbers(data, signal), numbers(data, answer)
     if not table[["_signal", "_answer"]].isin([0, 1]).all(axis=None):

@@ -31,6 +31,11 @@ def regression(data: pd.DataFrame, dv: str, predictors: str | Sequence[str], lev
     X, y = fitted.model.exog, fitted.model.endog
     if float(fitted.centered_tss) <= 1e-26 * float(y @ y):
         raise AnalysisError(f"{dv!r} has no variance, so there is nothing to explain.")
+    if _exact(fitted):
+        raise AnalysisError(
+            f"{listed(terms[1:])} explain {dv!r} without a remainder, so there is no variance to test against; "
+            "was one computed from the other?"
+        )
     scale = np.append(np.nan, X[:, 1:].std(axis=0, ddof=1)) / y.std(ddof=1)
     low, high = np.asarray(fitted.conf_int(1 - level)).T
     inverse = np.diag(fitted.normalized_cov_params)
@@ -71,6 +76,8 @@ def _fitted(data: pd.DataFrame, dv: str, predictors: tuple[str, ...]) -> tuple[A
     require(data, [dv, *predictors])
     if not predictors:
         raise AnalysisError("Name at least one predictor.")
+    if dv in predictors:
+        raise AnalysisError(f"{dv!r} cannot be explained by itself; leave it out of the predictors.")
     y = numbers(data, dv)
     terms, columns = ["(intercept)"], [np.ones(len(y))]
     for name in predictors:
@@ -98,26 +105,31 @@ def _fitted(data: pd.DataFrame, dv: str, predictors: tuple[str, ...]) -> tuple[A
     return OLS(y, X, hasconst=True).fit(method="qr"), terms, rows
 
 
+def _exact(fitted: Any) -> bool:
+    """Whether nothing but rounding is left over."""
+    y = fitted.model.endog
+    return float(fitted.ssr) <= 1e-24 * float(y @ y)
+
+
 def _summary(fitted: Any) -> dict[str, float]:
     from statsmodels.stats.stattools import durbin_watson
 
     n, p = fitted.model.exog.shape
-    varies = fitted.ssr > 0
-    w, shapiro_p = stats.shapiro(fitted.resid) if varies and n >= 3 else (np.nan, np.nan)
+    w, shapiro_p = stats.shapiro(fitted.resid) if n >= 3 else (np.nan, np.nan)
     return {
         "n": n,
         "r2": float(fitted.rsquared),
         "r2_adjusted": float(fitted.rsquared_adj),
         "rmse": float(np.sqrt(fitted.ssr / n)),
         "residual_se": float(np.sqrt(fitted.scale)),
-        "F": float(fitted.fvalue) if varies else np.nan,
+        "F": float(fitted.fvalue),
         "df1": p - 1,
         "df2": n - p,
-        "p": float(fitted.f_pvalue) if varies else np.nan,
-        "log_likelihood": float(fitted.llf) if varies else np.nan,
-        "aic": float(fitted.aic) + 2 if varies else np.nan,
-        "bic": float(fitted.bic + np.log(n)) if varies else np.nan,
-        "durbin_watson": float(durbin_watson(fitted.resid)) if varies else np.nan,
+        "p": float(fitted.f_pvalue),
+        "log_likelihood": float(fitted.llf),
+        "aic": float(fitted.aic) + 2,
+        "bic": float(fitted.bic + np.log(n)),
+        "durbin_watson": float(durbin_watson(fitted.resid)),
         "shapiro_w": float(w),
         "shapiro_p": float(shapiro_p),
         "loo_rmse": float(np.sqrt(np.mean((fitted.resid / (1 - fitted.get_influence().hat_matrix_diag)) ** 2))),

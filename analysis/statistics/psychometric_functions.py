@@ -11,7 +11,7 @@ from scipy import optimize, special
 
 from analysis.errors import AnalysisError
 from analysis.statistics.cells import names_of
-from analysis.statistics.columns import numbers, require, require_other_names
+from analysis.statistics.columns import numbers, require, require_filled, require_other_names
 
 SHAPES = ("logistic", "normal")
 COLUMNS = ("n", "intercept", "slope", "threshold", "threshold_se", "jnd", "lapse", "deviance", "df")
@@ -68,12 +68,16 @@ def psychometric(
         raise AnalysisError(f"bootstrap is a number of samples, 0 for no limits, not {bootstrap!r}.")
     require(data, [level, successes, *([trials] if trials else []), *by])
     require_other_names(by, (*COLUMNS, *BOOTSTRAP_COLUMNS))
+    require_filled(data, by)
     table = pd.DataFrame({name: data[name] for name in by})
     table["_x"], table["_k"] = numbers(data, level), numbers(data, successes)
     table["_n"] = numbers(data, trials) if trials else 1.0
     table = table.dropna()
     if ((table["_k"] < 0) | (table["_k"] > table["_n"])).any():
         raise AnalysisError(f"{successes!r} must lie between 0 and the number of trials.")
+    table = table[table["_n"] > 0]
+    if not len(table):
+        raise AnalysisError(f"{successes!r} has no trials, so there is no function to fit.")
     rows, notes = [], []
     for names, part in table.groupby(list(by), sort=True, observed=True) if by else [((), table)]:
         counts = part.groupby("_x", sort=True)[["_k", "_n"]].sum()

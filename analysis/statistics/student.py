@@ -13,7 +13,14 @@ import pandas as pd
 
 from analysis.errors import AnalysisError, AnalysisWarning, listed
 from analysis.statistics.cells import Levels, cell_means
-from analysis.statistics.columns import labels, numbers, numeric_label, require
+from analysis.statistics.columns import (
+    labels,
+    numbers,
+    numeric_label,
+    require,
+    require_different,
+    require_filled,
+)
 from analysis.statistics.t_statistics import from_moments, independent_tests, one_sample, paired_test
 
 COLUMNS = (
@@ -55,7 +62,10 @@ def t_tests(
     ]
     if len(given) != 1:
         raise AnalysisError("Give exactly one of against, paired and independent.")
-    require(data, [dv, subject, *(name for name in (each, paired, independent) if name)])
+    require_different(dv=dv, subject=subject, each=each, paired=paired, independent=independent)
+    labelled = [subject, *(name for name in (each, paired, independent) if name)]
+    require(data, [dv, *labelled])
+    require_filled(data, labelled)
     parts = _parts(data, each, levels)
     wanted = _wanted(against, each, list(parts)) if against is not None else {}
     rows: list[dict[str, Any]] = []

@@ -16,6 +16,7 @@ from analysis import (
     AnalysisWarning,
     anova,
     art_anova,
+    confusion_rate,
     d_prime,
     emmeans,
     equivalence,
@@ -328,3 +329,47 @@ def test_a_mixed_model_without_a_remainder_is_refused() -> None:
 def test_power_of_designs_that_cannot_be_is_a_sentence_instead_of_nothing(impossible: Any, said: str) -> None:
     with pytest.raises(AnalysisError, match=said):
         impossible()
+
+
+def test_rows_without_a_label_are_named_instead_of_dropped() -> None:
+    data = small().assign(right=1, was=[0, 1] * 12, level=[1, 2, 3, 4] * 6)
+    gap = data.assign(cue=data["cue"].where(data.index != 4))
+    for computed in (
+        lambda: proportions(gap, "right", by="cue"),
+        lambda: d_prime(gap, "was", "right", by="cue"),
+        lambda: psychometric(gap, "level", "right", by="cue"),
+        lambda: t_tests(gap, "score", "id", against=0, each="cue"),
+        lambda: confusion_rate(gap, "speed", "speed", "cue"),
+    ):
+        with pytest.raises(AnalysisError, match=r"'cue' is empty in row 5 \(1 such"):
+            computed()
+
+
+def test_levels_that_were_never_shown_tell_nothing_and_shares_of_nothing_are_refused() -> None:
+    shown = pd.DataFrame({"x": [1, 2, 3, 4], "k": [1, 3, 6, 9], "n": 10})
+    never = pd.concat([shown, pd.DataFrame({"x": [9], "k": [0], "n": [0]})])
+    pd.testing.assert_frame_equal(psychometric(shown, "x", "k", "n"), psychometric(never, "x", "k", "n"))
+    pd.testing.assert_frame_equal(proportions(shown, "k", "n"), proportions(never, "k", "n"))
+    for computed in (proportions, lambda *a: psychometric(a[0], "x", *a[1:])):
+        with pytest.raises(AnalysisError, match="'k' has no trials"):
+            computed(shown.assign(k=0, n=0), "k", "n")
+    with pytest.raises(AnalysisError, match="whole counts"):
+        proportions(shown.assign(n=10.5), "k", "n")
+
+
+def test_what_explains_itself_is_no_model() -> None:
+    data = small().assign(double=lambda d: 2 * d["score"] + 1)
+    with pytest.raises(AnalysisError, match="'score' cannot be explained by itself"):
+        regression(data, "score", ["score"])
+    with pytest.raises(AnalysisError, match="double explain 'score' without a remainder"):
+        regression(data, "score", ["double"])
+    with pytest.raises(AnalysisError, match="'cue' is named twice"):
+        mixed_model(data, "score", "id", "cue", ["speed", "cue"])
+    with pytest.raises(AnalysisError, match="'score' is named twice"):
+        t_tests(data, "score", "score", against=0)
+
+
+def test_a_trial_without_an_answer_is_no_confusion() -> None:
+    data = pd.DataFrame({"chosen": [1, 2, None], "original": [1.0, 1.0, 1.0], "who": "P1"})
+    row = confusion_rate(data, "chosen", "original", "who").iloc[0]
+    assert (row["trials"], row["confusion_rate"]) == (2, 50.0)
