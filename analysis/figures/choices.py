@@ -10,7 +10,18 @@ from scipy import special
 
 from analysis.apa import figures
 from analysis.errors import AnalysisError
-from analysis.figures.drawing import COLOURS, MARKERS, REFERENCE, DrawnFigure, beeswarm, canvas, panels, saved
+from analysis.figures.drawing import (
+    COLOURS,
+    MARKERS,
+    REFERENCE,
+    DrawnFigure,
+    beeswarm,
+    canvas,
+    legend_above,
+    level_ticks,
+    panels,
+    saved,
+)
 from analysis.planned.choice_tests import answered_levels
 from analysis.planned.further_test import FurtherTest
 from analysis.planned.plan_parts import PsychometricPlan
@@ -25,7 +36,8 @@ def proportions_figure(results: PlannedResults) -> DrawnFigure:
     test = _test(results, "proportions")
     groups = list(test.table.groupby("label", sort=False))
     width = 0.55 * max(len(part) for _, part in groups) + 1.9
-    drawing, axes = panels(len(groups), max(width, LEGEND / len(groups)), 4.2)
+    width = max(width, LEGEND / len(groups))
+    drawing, axes = panels(len(groups), width, 4.2)
     for axis, (label, part) in zip(axes, groups, strict=True):
         for i, row in enumerate(part.to_dict("records")):
             people = test.more[(test.more["label"] == label) & (test.more["level"] == row["level"])]
@@ -40,14 +52,13 @@ def proportions_figure(results: PlannedResults) -> DrawnFigure:
                 elinewidth=1.8, zorder=4, label="all trials, 95 % Wilson limits" if i == 0 else None,
             )  # fmt: skip
         axis.axhline(100 * part["chance"].iloc[0], color=REFERENCE, linewidth=1.2, linestyle="--", label="chance")
-        axis.set_xticks(range(len(part)), list(part["level"]))
+        level_ticks(axis, list(part["level"]), width - 0.5)
         axis.set_xlim(-0.6, len(part) - 0.4)
         axis.set_ylim(-4, 104)
         axis.set_title(label)
         axis.tick_params(length=0)
     axes[0].set_ylabel("trials (%)")
-    handles, names = axes[0].get_legend_handles_labels()
-    drawing.legend(handles, names, loc="outside upper center", ncols=3, fontsize=9, handletextpad=0.3)
+    legend_above(drawing, axes[0])
     caption = "Share of trials with 95 % Wilson limits of all trials together; each faint dot is one participant."
     return saved(drawing, "proportions", "Proportions against chance", caption)
 
@@ -79,7 +90,7 @@ def psychometric_figure(results: PlannedResults) -> DrawnFigure:
     axes.set_ylabel(f"{readable(asked.success)} (%)")
     axes.set_ylim(-4, 104)
     axes.margins(x=0.04)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.14), ncols=min(3, len(names)), fontsize=9)
+    legend_above(drawing, axes)
     caption = (
         f"How often {readable(asked.success)} along {asked.level}: all answers together with 95 % Wilson limits, and "
         "the function fitted to them; each faint curve is one participant, dotted lines are mean thresholds."

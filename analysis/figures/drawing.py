@@ -5,10 +5,12 @@ Drawn without pyplot, from fixed settings, so that the same data give the same b
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
+from itertools import pairwise
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -19,7 +21,11 @@ from analysis.statistics.cells import CellMeans
 COLOURS = ("#2b6cb0", "#c05621", "#2f855a", "#805ad5", "#b7791f", "#4a5568")
 MARKERS = ("o", "s", "^", "D", "v", "P")
 REFERENCE = "#c53030"
-FITTING = 74  # characters of level names that fit side by side under an axis
+FITTING = 14.0  # characters of level names that fit side by side into an inch under an axis
+UPRIGHT = 14  # characters of a level name from which it stands upright under an axis that is too narrow
+SMALL = 9.0  # points, letters of a legend
+HANDLE = 4.6  # letters' size that a mark of the legend and the space around it need beside its name
+LINE = 36  # characters of the label of an axis before it is broken into lines
 SETTINGS: dict[Any, Any] = {
     "svg.hashsalt": "gaitlab",
     "svg.fonttype": "path",
@@ -110,12 +116,49 @@ def beeswarm(values: np.ndarray, width: float) -> np.ndarray:
 
 
 def measure_label(plan: AnalysisPlan) -> str:
-    return f"{plan.label} ({plan.unit})" if plan.unit else plan.label
+    """What a measure's axis is called, a long name in lines."""
+    return "\n".join(wrap(f"{plan.label} ({plan.unit})" if plan.unit else plan.label, LINE))
+
+
+def level_ticks(axes: Any, levels: Sequence[str], inches: float) -> None:
+    """Names of levels under an axis of so many inches, slanted or upright (on taller paper) if they overlap."""
+    turned: dict[str, Any] = {}
+    longest = max(map(len, levels))
+    if sum(len(level) + 2 for level in levels) > FITTING * inches:
+        turned = {"rotation": 90} if longest > UPRIGHT else {"rotation": 35, "ha": "right"}
+    axes.set_xticks(range(len(levels)), levels, **turned)
+    if longest > UPRIGHT and turned:
+        drawing = axes.get_figure()
+        drawing.set_figheight(max(drawing.get_figheight(), 4.0 + 0.075 * longest))
+
+
+def legend_above(drawing: Any, axes: Any, title: str | None = None) -> None:
+    """The legend of `axes` above the figure, in as many rows as its names need, on as much taller paper."""
+    handles, names = axes.get_legend_handles_labels()
+    room = 72 * drawing.get_figwidth()
+    columns = next(n for n in range(len(names), 0, -1) if n == 1 or _legend_width(names, n) <= room)
+    rows = -(-len(names) // columns)
+    drawing.set_figheight(drawing.get_figheight() + 0.2 * (rows - 1))
+    drawing.legend(
+        handles, names, loc="outside upper center", ncols=columns, fontsize=SMALL, handletextpad=0.4, title=title,
+        title_fontsize=SMALL,
+    )  # fmt: skip
+
+
+def _legend_width(names: Sequence[str], columns: int) -> float:
+    """Points that a legend of so many columns, filled one after the other, is wide."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import TextToPath
+
+    font, measured = FontProperties(family=SETTINGS["font.family"], size=SMALL), TextToPath()
+    widths = [measured.get_text_width_height_descent(name, font, False)[0] for name in names]
+    rows, longer = divmod(len(names), columns)
+    ends = [rows * i + min(i, longer) for i in range(columns + 1)]
+    return sum(max(widths[start:end]) + HANDLE * SMALL for start, end in pairwise(ends))
 
 
 def finish(axes: Any, plan: AnalysisPlan, x: str, levels: tuple[str, ...]) -> None:
-    slanted = sum(len(level) + 2 for level in levels) > FITTING
-    axes.set_xticks(range(len(levels)), levels, **({"rotation": 35, "ha": "right"} if slanted else {}))
+    level_ticks(axes, levels, axes.get_figure().get_figwidth() - 1.1)
     axes.set_xlim(-0.5, len(levels) - 0.5)
     axes.set_xlabel(x)
     axes.set_ylabel(measure_label(plan))

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from analysis.figures.drawing import COLOURS, MARKERS, DrawnFigure, averaged, beeswarm, canvas, finish, saved
+from analysis.figures.drawing import (
+    COLOURS,
+    MARKERS,
+    DrawnFigure,
+    averaged,
+    beeswarm,
+    canvas,
+    finish,
+    legend_above,
+    saved,
+)
 from analysis.planned.plan import AnalysisPlan
 from analysis.statistics.cells import CellMeans
 from analysis.statistics.intervals import ordinary, within_participant
@@ -42,14 +52,7 @@ def interaction(x: str, lines: str, means: CellMeans, plan: AnalysisPlan) -> Dra
             label=name,
         )
     finish(axes, plan, x, levels)
-    axes.legend(
-        title=lines,
-        loc="upper center",
-        bbox_to_anchor=(0.5, 1.2),
-        ncols=len(series),
-        fontsize=9,
-        title_fontsize=9,
-    )
+    legend_above(drawing, axes, lines)
     caption = f"{plan.label} by {x} and {lines}: means with {kind}; each faint dot is one participant."
     return saved(drawing, f"interaction_{x}_{lines}", f"{plan.label} by {x} and {lines}", caption)
 

@@ -15,6 +15,7 @@ from analysis.figures.drawing import (
     beeswarm,
     canvas,
     finish,
+    legend_above,
     saved,
     settings,
 )
@@ -131,5 +132,5 @@ def _means(x: str, reference: str | None, means: CellMeans, plan: AnalysisPlan) 
         )
         caption += f" Red diamonds: {test.label}."
     finish(axes, plan, x, levels)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.12), ncols=3, fontsize=9, handletextpad=0.3)
+    legend_above(drawing, axes)
     return saved(drawing, f"means_{x}", f"{plan.label} by {x}", caption)

@@ -9,7 +9,7 @@ import numpy as np
 
 from analysis.apa import p_value
 from analysis.errors import AnalysisError
-from analysis.figures.drawing import COLOURS, MARKERS, DrawnFigure, measure_label, panels, saved
+from analysis.figures.drawing import COLOURS, MARKERS, DrawnFigure, legend_above, measure_label, panels, saved
 from analysis.planned.plan_parts import FigurePlan
 from analysis.planned.results import PlannedResults
 
@@ -52,8 +52,7 @@ def regression_figure(figure: FigurePlan, results: PlannedResults) -> DrawnFigur
         axis.margins(0.1)
     axes[0].set_ylabel(measure_label(plan))
     if figure.panels is not None:
-        handles, labels = axes[0].get_legend_handles_labels()
-        drawing.legend(handles, labels, loc="outside upper center", ncols=len(labels), fontsize=9)
+        legend_above(drawing, axes[0])
     drawing.draw_without_rendering()
     for axis, name in zip(axes, names, strict=True):
         _name_points(axis, cases[name].to_numpy(float), cases[plan.measure].to_numpy(float), list(map(str, cases[of])))

@@ -8,7 +8,17 @@ import numpy as np
 import pandas as pd
 
 from analysis.errors import AnalysisError
-from analysis.figures.drawing import COLOURS, REFERENCE, DrawnFigure, beeswarm, measure_label, panels, saved
+from analysis.figures.drawing import (
+    COLOURS,
+    REFERENCE,
+    DrawnFigure,
+    beeswarm,
+    legend_above,
+    level_ticks,
+    measure_label,
+    panels,
+    saved,
+)
 from analysis.planned.plan_parts import FigurePlan
 from analysis.planned.results import ALPHA, PlannedResults
 from analysis.recorded.exclusions import matching
@@ -32,15 +42,16 @@ def t_tests_figure(figure: FigurePlan, results: PlannedResults) -> DrawnFigure:
     if figure.panels is not None:
         groups = dict(plan.groups[figure.panels].levels)
     width = 0.42 * max(map(len, groups.values())) + 1.6
-    drawing, axes = panels(len(groups), max(width, LEGEND / len(groups)), 4.2)
+    width = max(width, LEGEND / len(groups))
+    drawing, axes = panels(len(groups), width, 4.2)
     for place, (axis, (group, levels)) in enumerate(zip(axes, groups.items(), strict=True)):
         shown = rows[rows["level"].isin(levels)]
-        _panel(axis, shown, _persons(used, test.each, plan.levels[test.each], plan.measure), COLOURS[place % 6])
+        persons = _persons(used, test.each, plan.levels[test.each], plan.measure)
+        _panel(axis, shown, persons, COLOURS[place % 6], width - (1.1 if place == 0 else 0.2))
         axis.set_title(group)
         axis.set_xlabel(test.each)
     axes[0].set_ylabel(measure_label(plan))
-    handles, names = axes[0].get_legend_handles_labels()
-    drawing.legend(handles, names, loc="outside upper center", ncols=3, fontsize=9, handletextpad=0.3)
+    legend_above(drawing, axes[0])
     caption = (
         f"{plan.label} of every {test.each}"
         + (f" ({test.where})" if test.where else "")
@@ -57,7 +68,7 @@ def _persons(used: pd.DataFrame, each: str, order: tuple[str, ...], measure: str
     return named.groupby(["_level", "participant"])[measure].mean()
 
 
-def _panel(axis: Any, rows: pd.DataFrame, persons: pd.Series, colour: str) -> None:
+def _panel(axis: Any, rows: pd.DataFrame, persons: pd.Series, colour: str, inches: float) -> None:
     for i, row in enumerate(rows.to_dict("records")):
         values = persons.loc[row["level"]].to_numpy()
         dots = axis.scatter(i + beeswarm(values, 0.12), values, s=12, color=colour, alpha=0.25, linewidths=0, zorder=2)
@@ -74,7 +85,7 @@ def _panel(axis: Any, rows: pd.DataFrame, persons: pd.Series, colour: str) -> No
         if row["p"] >= ALPHA:
             top = max(values.max(), row["against"])
             axis.annotate("★", (i, top), (0, 4), textcoords="offset points", ha="center", fontsize=10)
-    axis.set_xticks(range(len(rows)), list(rows["level"]))
+    level_ticks(axis, list(rows["level"]), inches)
     axis.set_xlim(-0.6, len(rows) - 0.4)
     axis.tick_params(length=0)
     axis.margins(y=0.1)

@@ -10,16 +10,21 @@ import re
 import shutil
 import subprocess
 import warnings
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 
 from analysis import AnalysisOutcome, AnalysisWarning, analyse, apa
+from analysis.figures.drawing import settings
+from analysis.figures.interaction import interaction
 from analysis.planned.further_tests import planned_tests
 from analysis.planned.plan import plan_of
 from analysis.report.latex import _table
+from analysis.statistics.cells import cell_means
 from experiment_app.simulated.simulate import simulate
 from protocols.mistakes.consistency import inconsistencies
 from protocols.study_file import parse_study
@@ -162,3 +167,35 @@ def test_a_table_longer_than_a_page_goes_on_over_the_next(tmp_path: Path) -> Non
     assert done.returncode == 0, done.stdout
     assert "too large" not in done.stdout
     assert "(3 pages" in done.stdout or "(4 pages" in done.stdout
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("lines", ["way", "experience"])
+def test_names_as_long_as_people_give_them_stay_on_the_paper_and_off_each_other(lines: str) -> None:
+    """Ten ways of making a walk, three kinds of people, and a measure that is a sentence."""
+    ways = [f"walk_made_in_the_way_of_number_{i}" for i in range(10)]
+    people = ("has_never_seen_a_virtual_human", "plays_games_every_day", "develops_virtual_humans")
+    label = "Walk ratio that looked most natural to the participant"
+    plan = plan_of({
+        "factors": {"way": ways, "speed": ["slow", "fast"]},
+        "participants": {"between": {"experience": list(people)}},
+        "analysis": {"measure": "y", "label": label, "unit": "m·min", "anova": {"within": ["way", "speed"]}},
+    })  # fmt: skip
+    rng = np.random.default_rng(1)
+    rows = [(p, w, s, people[p % 3], rng.normal()) for p in range(9) for w in ways for s in ("slow", "fast")]
+    data = pd.DataFrame(rows, columns=["participant", "way", "speed", "experience", "y"])
+    means = cell_means(data, "y", "participant", ["way", "speed"], "experience")
+    seen: list[Figure] = []
+    with settings(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr("analysis.figures.interaction.saved", lambda drawing, *words: seen.append(drawing))
+        interaction("speed" if lines == "way" else "way", lines, means, plan)
+    drawing = seen[0]
+    drawing.canvas.draw()
+    paper, axes = drawing.bbox, drawing.axes[0]
+    names = [text.get_window_extent() for text in axes.get_xticklabels()]
+    for box in (drawing.legends[0].get_window_extent(), axes.yaxis.label.get_window_extent(), *names):
+        assert paper.x0 <= box.x0 < box.x1 <= paper.x1
+        assert paper.y0 <= box.y0 < box.y1 <= paper.y1
+    assert all(left.x1 <= right.x0 for left, right in pairwise(names))
+    assert not axes.yaxis.label.get_window_extent().overlaps(names[0])
+    assert axes.get_window_extent().height > 0.4 * paper.height
