@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from analysis.errors import AnalysisError
-from analysis.recorded.copies import without_copies
+from analysis.recorded.copies import not_read, without_copies
 from analysis.recorded.journal import journals_of, read_records
 
 SAFETY = 1.0
@@ -85,8 +85,10 @@ def read_runs(folder: Path) -> tuple[list[ExportedRun], list[str]]:
 
     Raises AnalysisError when there is none, when a journal is damaged, or when runs of different kinds are mixed.
     """
-    every = [_read(path, path.relative_to(folder).as_posix()) for path in journals_of(folder)]
+    paths = journals_of(folder)
+    every = [_read(path, path.relative_to(folder).as_posix()) for path in paths]
     every, copies, left_out = without_copies(every)
+    left_out += not_read(folder, paths)
     left_out += [f"{run.participant}: {why}; left out." for run, why in copies]
     runs = []
     for run in every:

@@ -16,7 +16,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, ClassVar, Protocol, TypeVar
 
-from analysis.errors import AnalysisError
+from analysis.errors import AnalysisError, listed
 
 
 class Recorded(Protocol):
@@ -62,6 +62,22 @@ def without_copies(runs: Sequence[R]) -> tuple[list[R], list[tuple[R, str]], lis
     _refuse_clash(once)
     moved = [_moved(run, counted[run.path]) for run in runs if run.path in counted and not _at_home(run)]
     return once, [(run, copies[run.path]) for run in runs if run.path in copies], moved
+
+
+def not_read(folder: Path, read: Sequence[Path]) -> list[str]:
+    """A sentence on journals under a study's sourcedata that stand where none is looked for, as synchronising and
+    unpacking leave them; read: those that were found. Hidden folders, which hold old versions, are passed over.
+    """
+    others = sorted(set((folder / "sourcedata").rglob("journal*.jsonl")) - set(read))
+    inside = [other.relative_to(folder) for other in others]
+    named = [place.as_posix() for place in inside if not any(part.startswith(".") for part in place.parts)]
+    if not named:
+        return []
+    names = listed(named, 3)
+    return [
+        f"Not read: {names}. A recording counts when it is called journal.jsonl and lies in a run's folder of its own, "
+        "as sourcedata/sub-P01/run-2."
+    ]
 
 
 def _recordings(runs: Sequence[R]) -> Iterator[list[R]]:

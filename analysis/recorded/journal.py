@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from analysis.errors import AnalysisError, listed
-from analysis.recorded.copies import without_copies
+from analysis.recorded.copies import not_read, without_copies
 
 if TYPE_CHECKING:
     from protocols.journal_text import JournalText
@@ -139,6 +139,7 @@ def read_study(folder: Path, unfinished: bool = False) -> RecordedStudy:
         digest.update(path.read_bytes())
         every.append(read_journal(path, name))
     every, copies, warnings = without_copies(every)
+    warnings += not_read(folder, paths)
     left_out, runs = [(run.participant, why) for run, why in copies], []
     for run in every:
         if run.torn:

@@ -237,3 +237,24 @@ def test_of_a_run_that_went_on_after_it_was_copied_the_longer_journal_counts(tmp
     recorded = read_study(study)
     assert [(one.participant, one.path.parts[-3]) for one in recorded.runs] == [("P01", "sub-backup")]
     assert recorded.left_out == (("P01", "a copy of run 1 in sub-P01/run-1"),)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "sub-P01/run-1/journal (Lab 2's conflicted copy 2026-11-24).jsonl",
+        "sub-P01/run-1/journal.sync-conflict-20261124-101500-ABCDEFG.jsonl",
+        "sub-P02/sub-P02/run-1/journal.jsonl",
+        "second computer/sub-P02/run-1/journal.jsonl",
+    ],
+)
+def test_a_recording_that_lies_where_none_is_looked_for_is_named(tmp_path, capfd, name):
+    play(opened(tmp_path))
+    study = tmp_path / "walk_ratio"
+    assert not any("Not read" in warning for warning in read_study(study).warnings)
+    there = study / "sourcedata" / name
+    there.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(study / "sourcedata" / "sub-P01" / "run-1" / "journal.jsonl", there)
+    assert any(f"Not read: sourcedata/{name}. A recording" in warning for warning in read_study(study).warnings)
+    assert run(["export", str(study), "--to", "csv", "--out", str(tmp_path / "csv")]) == 0
+    assert f"Not read: sourcedata/{name}." in " ".join(capfd.readouterr().err.split())
