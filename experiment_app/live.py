@@ -36,7 +36,7 @@ from experiment_app.opening import (
     unfinished_run,
 )
 from experiment_app.participants.arrivals import first_headers
-from experiment_app.participants.earlier import refuse_another_study, tell_changes
+from experiment_app.participants.earlier import refuse_another_study, refuse_lookalike, tell_changes
 from experiment_app.run_folder import Run, check_participant
 from experiment_app.staging import crowd_of, making_of
 from experiment_app.terminal import typed
@@ -101,6 +101,7 @@ def run_live(
     file = checked_study(study)
     refuse_mixed(data, file.study.study, kind_of(False, pilot))
     headers = first_headers(data, file.study.study)
+    refuse_lookalike(headers, participant)
     old = None if new_run else unfinished_run(data, file.study.study, participant)
     if old is None:
         refuse_another_study(headers, file, data)

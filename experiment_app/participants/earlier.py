@@ -5,6 +5,7 @@ Told or refused before the window opens, from the headers of the runs alone.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -36,6 +37,24 @@ def refuse_another_study(headers: Sequence[Header], file: StudyFile, data: Path)
                 "they would stand in one table. Give this one a name of its own under `study:`, or choose another "
                 "folder with --data."
             )
+
+
+def refuse_lookalike(headers: Sequence[Header], participant: str) -> None:
+    """Raises UsageError for a new ID that is an earlier one in other letters or zeros, as p1 for P01.
+
+    Who came back would begin anew under it, and on computers where p01 and P01 are one name, folders would mix.
+    """
+    known = {str(header["participant"]) for header in headers}
+    for other in sorted(known - {participant}) if participant not in known else ():
+        if _sound(other) == _sound(participant):
+            raise UsageError(
+                f"--participant {participant}: there is a participant {other} already. For the same person say "
+                f"--participant {other}; for somebody else choose an ID that cannot be mistaken for it."
+            )
+
+
+def _sound(participant: str) -> str:
+    return re.sub(r"0+(?=\d)", "", participant.lower())
 
 
 def tell_changes(headers: Sequence[Header], file: StudyFile, say: Callable[[str], None]) -> None:

@@ -19,7 +19,7 @@ from experiment_app.live import ScreenOptions, run_live
 from experiment_app.loop import run_session
 from experiment_app.opening import open_new
 from experiment_app.participants.arrivals import first_headers
-from experiment_app.participants.earlier import tell_changes
+from experiment_app.participants.earlier import refuse_lookalike, tell_changes
 from experiment_app.run_folder import participant_runs
 from experiment_app.simulated.observer import SimulatedParticipant, draw_observer
 from experiment_app.windows.undrawn import UndrawnWindow
@@ -266,6 +266,21 @@ def test_another_study_of_the_same_name_is_refused_before_a_window_opens_but_its
     assert f"holds another study of that name (P01: {why}" in sits_down("P02")
     assert "another study" not in sits_down("P01")  # goes on with the study it was begun with
     assert said[-1] == "The study file has changed since; the run goes on with the study it was begun with."
+
+
+@pytest.mark.parametrize(
+    ("known", "new", "refused"),
+    [
+        ("P01", "p01", True), ("P01", "P1", True), ("P01", "p001", True), ("100", "0100", True),
+        ("P01", "P01", False), ("P01", "P10", False), ("P10", "P1", False), ("A1B", "A01B", True), ("P0", "P00", True),
+    ],
+)  # fmt: skip
+def test_an_id_that_differs_in_case_or_zeros_only_is_refused_with_the_one_there_is(known, new, refused):
+    if not refused:
+        refuse_lookalike([{"participant": known}], new)
+        return
+    with pytest.raises(UsageError, match=f"there is a participant {known} already"):
+        refuse_lookalike([{"participant": known}], new)
 
 
 def test_who_took_part_with_another_version_of_the_study_file_is_told_with_what_differs(tmp_path):
