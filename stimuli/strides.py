@@ -45,8 +45,7 @@ class Stride:
 def strides_of(paths: FootPaths, events: Sequence[FootEvent]) -> list[Stride]:
     """Strides of both feet in order of time, between strikes inside the recording."""
     frames = np.arange(len(paths.pelvis)) / paths.rate
-    smooth = low_pass(paths.pelvis[:, [0, 2]], PATH_CUTOFF, paths.rate)
-    walked = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(smooth, axis=0), axis=1))])
+    walked = walked_path(paths)
     pace = np.gradient(walked) * paths.rate if len(walked) > 1 else np.zeros(1)
     strides = []
     for index, side in enumerate(SIDES):
@@ -58,6 +57,12 @@ def strides_of(paths: FootPaths, events: Sequence[FootEvent]) -> list[Stride]:
                 ends = (float(np.interp(time, frames, pace)) for time in (start, end))
                 strides.append(Stride(index, start, end, travel, *ends))
     return sorted(strides, key=lambda stride: stride.start)
+
+
+def walked_path(paths: FootPaths) -> Floats:
+    """(T,) m that the pelvis has gone along its path since the first frame."""
+    smooth = low_pass(paths.pelvis[:, [0, 2]], PATH_CUTOFF, paths.rate)
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(smooth, axis=0), axis=1))])
 
 
 def steady_strides(strides: list[Stride]) -> tuple[list[Stride], bool]:

@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from stimuli.clip import Clip, FootEvent, world_positions
-from stimuli.events import GaitError, events_of, foot_paths
+from stimuli.events import SIDES, GaitError, events_of, foot_paths
 from stimuli.gait_measures import GaitMeasures, measure_paths
 from stimuli.motion_files.axes import leg_length
 from stimuli.motion_files.reading import read_clip
+from stimuli.strides import walked_path
 
 
 def clip_report(path: Path) -> dict[str, Any]:
@@ -40,7 +41,7 @@ def clip_report(path: Path) -> dict[str, Any]:
         "heel_strikes": _times(events, "strike", start),
         "toe_offs": _times(events, "off", start),
         "steps_used": measures.steps_used if measures else 0,
-        "speed_m_s": _number(measures.speed if measures else None),
+        "speed_m_s": _number(measures.speed if measures else _path_speed(clip, events)),
         "step_frequency_steps_min": _number(measures.gait.step_frequency if measures else None),
         "step_length_m": _number(measures.gait.step_length if measures else None),
         "walk_ratio_m_min": _number(measures.gait.walk_ratio if measures else None),
@@ -74,7 +75,11 @@ def clip_lines(report: dict[str, Any]) -> list[str]:
             lines.append(f"  {title + ',':13s} {side:5s}  {times} s")
     if report["speed_m_s"] is not None:
         lines += [
-            f"  speed         {report['speed_m_s']:.3f} m/s over {report['steps_used']} steps",
+            f"  speed         {report['speed_m_s']:.3f} m/s "
+            + (f"over {report['steps_used']} steps" if report["steps_used"] else "over all frames"),
+        ]
+    if report["step_length_m"] is not None:
+        lines += [
             f"  step          {report['step_length_m']:.3f} m at {report['step_frequency_steps_min']:.1f} steps/min",
             f"  walk ratio    {report['walk_ratio_m_min']:.5f} m·min",
         ]
@@ -105,6 +110,13 @@ def _measured(clip: Clip) -> tuple[tuple[FootEvent, ...], GaitMeasures | None, l
     if measures.on_the_spot:
         warnings.append("the walker stays on the spot; the speed is that of the standing feet, as on a treadmill")
     return events, measures, warnings
+
+
+def _path_speed(clip: Clip, events: tuple[FootEvent, ...]) -> float | None:
+    """m/s along the path of a clip that holds one step and no whole stride; None of any other motion without a gait."""
+    if sorted(event.side for event in events if event.kind == "strike") != list(SIDES):
+        return None
+    return float(walked_path(foot_paths(clip))[-1] / clip.duration)
 
 
 def _normalised(measures: GaitMeasures | None, length: float | None) -> dict[str, float | None] | None:

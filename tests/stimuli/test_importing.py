@@ -72,6 +72,14 @@ def test_the_clip_report_has_the_manifests_figures(row):
 
 
 @needs_captures
+def test_a_clip_of_a_single_step_has_the_manifests_speed_and_no_step_frequency():
+    report = clip_report(MOCAP / "bvh" / "bandai" / "dataset-1_walk_normal_002.bvh")
+    assert report["speed_m_s"] == pytest.approx(1.578, rel=0.02)
+    assert (report["steps_used"], report["step_frequency_steps_min"], report["step_length_m"]) == (0, None, None)
+    assert "  speed         1.578 m/s over all frames" in clip_lines(report)
+
+
+@needs_captures
 def test_a_standing_trial_is_described_and_has_no_gait():
     pytest.importorskip("ezc3d")
     report = clip_report(MOCAP / "c3d" / "schreiber-moissenet" / "2014019_ST.c3d")
