@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from stimuli.bodies.body import Body, Integers, Surface
+from stimuli.bodies.body import Body, Surface
 from stimuli.body_generator.blush import blush
 from stimuli.body_generator.face import face_patches
 from stimuli.body_generator.fields import Field
 from stimuli.body_generator.figure import Figure
-from stimuli.body_generator.hair import knot_height, style_names
+from stimuli.body_generator.hair import hangs, knot_height, style_names
 from stimuli.body_generator.haircuts import hair_pieces
 from stimuli.body_generator.head import head_frame
 from stimuli.body_generator.heat import Heat, bone_heat, weights_at
@@ -164,7 +164,10 @@ def _surface(figure: Figure, name: str, pieces: list[Piece], heat: Heat) -> Surf
     counts = np.cumsum([0] + [len(p.mesh.positions) for p in pieces])
     triangles = np.concatenate([p.mesh.triangles + first for p, first in zip(pieces, counts[:-1], strict=True)])
     kind = name.split(":")[0]
-    joints, weights = weights_at(heat, positions) if not name.startswith("hair") else _head_only(len(positions))
+    joints, weights = weights_at(heat, positions)
+    if kind == "hair":
+        hanging = hangs(name.removeprefix("hair:"), figure, positions)
+        joints[hanging], weights[hanging] = (JOINTS.index("head"), 0, 0, 0), (1.0, 0, 0, 0)
     return Surface(
         name=name,
         colour=np.array(figure.colours[kind]),
@@ -178,12 +181,6 @@ def _surface(figure: Figure, name: str, pieces: list[Piece], heat: Heat) -> Surf
         blush=blush(figure, positions) if name == "skin" else None,
         knot=knot_height(name.removeprefix("hair:"), figure),
     )
-
-
-def _head_only(count: int) -> tuple[Integers, Floats]:
-    joints = np.zeros((count, 4), dtype=int)
-    joints[:, 0] = JOINTS.index("head")
-    return joints, np.tile([1.0, 0, 0, 0], (count, 1))
 
 
 def _mirror(piece: Piece) -> Piece:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stimuli.body_generator.fields import Field, capsule, ellipsoid, generalised_cylinder, join, smooth_max, smooth_min
 from stimuli.body_generator.figure import Figure
@@ -38,6 +39,7 @@ _LINES = {
 }  # fmt: skip
 
 KNOT = (0.0, 165.2, -11.6)  # of the ponytail
+TAIL = -10.6  # z, what lies further back is the ponytail's tail
 PARTING = 2.6  # cm to the left, of the bob
 
 
@@ -225,6 +227,13 @@ def _ponytail(skull: Field) -> Style:
 def knot_height(name: str, figure: Figure) -> float | None:
     """m above the ground, where the hair of that haircut is tied."""
     return float(head_frame(figure).to_figure(np.array(KNOT))[1] / 100) if name == "ponytail" else None
+
+
+def hangs(name: str, figure: Figure, points: Floats) -> NDArray[np.bool_]:
+    """(N,) which points (N, 3) cm of a haircut do not lie on the skin they grow on: they move with the head alone."""
+    if name == "bob":
+        return np.full(len(points), True)
+    return np.asarray(head_frame(figure).to_head(points)[:, 2] < TAIL)
 
 
 def solid_field(solid: Field, figure: Figure) -> Field:

@@ -5,6 +5,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from stimuli.actors import load_actor
@@ -307,6 +308,18 @@ def test_there_are_two_haircuts_and_they_differ(name):
     )
     with pytest.raises(BodyError, match="there is no haircut 'mohawk'; known are"):
         load_body(name, "mohawk")
+
+
+@pytest.mark.parametrize("name", ["woman_ponytail", "man", "man_cropped"])
+def test_hair_that_grows_at_the_nape_stays_on_a_thicker_neck(name):
+    """The lowest hair is as far from the skin in a stout build as in the medium one."""
+    medium, stout = load_body(name), load_body(f"{name}_stout")
+    hair, thicker = surface(medium, "hair").positions, surface(stout, "hair").positions
+    low = np.flatnonzero((hair[:, 1] < 0.905 * medium.stature) & (hair[:, 2] > -0.09))
+    assert len(low) > 10
+    skin_of = [cKDTree(surface(b, "skin").positions) for b in (medium, stout)]
+    before, after = skin_of[0].query(hair[low])[0], skin_of[1].query(thicker[low])[0]
+    assert np.abs(after - before).max() < 0.0015
 
 
 def test_scaling_is_uniform_and_moves_the_joints_too():
