@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from stimuli.clip import Clip, FootEvent
 from stimuli.events import SIDES, FootPaths, GaitError, events_of, foot_paths
 from stimuli.gait import Gait
-from stimuli.strides import Stride, between_spreads, steady_strides, strides_of
+from stimuli.strides import Stride, between_spreads, steady_strides, strides_of, walked_path
 
 Floats = NDArray[np.floating]
 
@@ -57,8 +57,7 @@ def measure_paths(paths: FootPaths, events: Sequence[FootEvent], name: str = "th
     timed = used if steady or len(used) == 1 else between_spreads(paths, used)
     time = sum(stride.time for stride in timed)
     travel = sum(stride.travel for stride in timed)
-    swing = np.median([np.ptp(_along(paths, index)) for index in (0, 1)])
-    on_the_spot = bool(travel / len(timed) < STILL * swing)
+    on_the_spot = bool(travel / len(timed) < STILL * _swing(paths))
     speed = _belt_speed(paths, used) if on_the_spot else travel / time
     lengths, widths = _placements(paths, events, used, speed if on_the_spot else 0.0)
     shares = _stance_shares(events, used)
@@ -74,6 +73,17 @@ def measure_paths(paths: FootPaths, events: Sequence[FootEvent], name: str = "th
         on_the_spot=on_the_spot,
         steady=steady,
     )
+
+
+def path_speed(paths: FootPaths) -> float | None:
+    """m/s along the pelvis' path over a whole motion, where no stride can tell it; None on the spot."""
+    travel = float(walked_path(paths)[-1])
+    return travel * paths.rate / (len(paths.pelvis) - 1) if travel > STILL * _swing(paths) else None
+
+
+def _swing(paths: FootPaths) -> float:
+    """m, how far the feet swing along the heading: from furthest behind the pelvis to furthest ahead."""
+    return float(np.median([np.ptp(_along(paths, index)) for index in (0, 1)]))
 
 
 def _flat(path: Floats, time: float, paths: FootPaths) -> Floats:

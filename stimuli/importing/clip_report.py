@@ -9,10 +9,9 @@ from typing import Any
 
 from stimuli.clip import Clip, FootEvent, world_positions
 from stimuli.events import SIDES, GaitError, events_of, foot_paths
-from stimuli.gait_measures import GaitMeasures, measure_paths
+from stimuli.gait_measures import GaitMeasures, measure_paths, path_speed
 from stimuli.motion_files.axes import leg_length
 from stimuli.motion_files.reading import read_clip
-from stimuli.strides import walked_path
 
 
 def clip_report(path: Path) -> dict[str, Any]:
@@ -41,7 +40,7 @@ def clip_report(path: Path) -> dict[str, Any]:
         "heel_strikes": _times(events, "strike", start),
         "toe_offs": _times(events, "off", start),
         "steps_used": measures.steps_used if measures else 0,
-        "speed_m_s": _number(measures.speed if measures else _path_speed(clip, events)),
+        "speed_m_s": _number(measures.speed if measures else _speed_of_one_step(clip, events)),
         "step_frequency_steps_min": _number(measures.gait.step_frequency if measures else None),
         "step_length_m": _number(measures.gait.step_length if measures else None),
         "walk_ratio_m_min": _number(measures.gait.walk_ratio if measures else None),
@@ -112,11 +111,11 @@ def _measured(clip: Clip) -> tuple[tuple[FootEvent, ...], GaitMeasures | None, l
     return events, measures, warnings
 
 
-def _path_speed(clip: Clip, events: tuple[FootEvent, ...]) -> float | None:
+def _speed_of_one_step(clip: Clip, events: tuple[FootEvent, ...]) -> float | None:
     """m/s along the path of a clip that holds one step and no whole stride; None of any other motion without a gait."""
     if sorted(event.side for event in events if event.kind == "strike") != list(SIDES):
         return None
-    return float(walked_path(foot_paths(clip))[-1] / clip.duration)
+    return path_speed(foot_paths(clip))
 
 
 def _normalised(measures: GaitMeasures | None, length: float | None) -> dict[str, float | None] | None:

@@ -80,6 +80,11 @@ def test_a_clip_of_a_single_step_has_the_manifests_speed_and_no_step_frequency()
 
 
 @needs_captures
+def test_a_single_step_on_the_spot_has_no_speed():
+    assert clip_report(MOCAP.parent / "gltf" / "CesiumMan.glb")["speed_m_s"] is None
+
+
+@needs_captures
 def test_a_standing_trial_is_described_and_has_no_gait():
     pytest.importorskip("ezc3d")
     report = clip_report(MOCAP / "c3d" / "schreiber-moissenet" / "2014019_ST.c3d")
