@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from analysis.errors import AnalysisError
 from analysis.figures.drawing import (
     COLOURS,
     MARKERS,
@@ -21,6 +22,8 @@ from analysis.statistics.intervals import ordinary, within_participant
 
 
 def interaction(x: str, lines: str, means: CellMeans, plan: AnalysisPlan) -> DrawnFigure:
+    if x == lines:
+        raise AnalysisError(f"an interaction is of two factors, not of {x} with itself.")
     drawing, axes = canvas(6.8)
     levels, series = means.levels(x), means.levels(lines)
     columns, halves, kind = _series(x, lines, means)

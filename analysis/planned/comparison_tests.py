@@ -9,30 +9,46 @@ from typing import Any
 import pandas as pd
 
 from analysis import apa
+from analysis.errors import AnalysisError
 from analysis.planned.further_test import FurtherTest, worth_saying
 from analysis.planned.plan import AnalysisPlan
+from analysis.planned.plan_parts import ComparisonPlan
 from analysis.recorded.exclusions import selected
 from analysis.statistics.comparisons import pairwise
 from analysis.statistics.student import t_tests
 
 
 def comparison_tests(used: pd.DataFrame, plan: AnalysisPlan) -> FurtherTest:
-    """Paired, independent and overall one-sample t tests: factor, each, where, reference, as `t_tests`, sentence."""
+    """Paired, independent and overall one-sample t tests: factor, each, where, reference, as `t_tests`, sentence.
+
+    One that cannot be run is a complaint beside the others; AnalysisError if none can.
+    """
     parts: list[pd.DataFrame] = []
     notes: list[str] = []
+    complaints: list[str] = []
     for asked in plan.comparisons:
-        chosen = selected(used, asked.where)
-        named = [name for name in (asked.each, asked.factor) if name is not None]
-        table = t_tests(
-            chosen, plan.measure, "participant", each=asked.each, levels={name: plan.levels[name] for name in named},
-            against=asked.against, paired=asked.factor if asked.kind == "paired" else None,
-            independent=asked.factor if asked.kind == "independent" else None,
-        )  # fmt: skip
+        try:
+            table = _compared(used, plan, asked)
+        except AnalysisError as error:
+            complaints.append(f"The t tests of {asked.factor or asked.label} cannot be run: {error}")
+            continue
         notes += table.attrs["notes"]
-        parts.append(table.assign(factor=asked.factor or "", each=asked.each or "", where=asked.where or "",
-                                  reference=asked.label if asked.kind == "against" else ""))  # fmt: skip
+        parts.append(table)
+    if not parts:
+        raise AnalysisError(" ".join(complaint.split(": ", 1)[1] for complaint in dict.fromkeys(complaints)))
     table = _one_table(parts, ["factor", "each", "where", "reference"], _sentence)
-    return FurtherTest("comparisons", table, notes=worth_saying(notes))
+    return FurtherTest("comparisons", table, notes=worth_saying(notes), complaints=tuple(complaints))
+
+
+def _compared(used: pd.DataFrame, plan: AnalysisPlan, asked: ComparisonPlan) -> pd.DataFrame:
+    named = [name for name in (asked.each, asked.factor) if name is not None]
+    table = t_tests(
+        selected(used, asked.where), plan.measure, "participant", each=asked.each, against=asked.against,
+        levels={name: plan.levels[name] for name in named}, paired=asked.factor if asked.kind == "paired" else None,
+        independent=asked.factor if asked.kind == "independent" else None,
+    )  # fmt: skip
+    return table.assign(factor=asked.factor or "", each=asked.each or "", where=asked.where or "",
+                        reference=asked.label if asked.kind == "against" else "")  # fmt: skip
 
 
 def _one_table(parts: list[pd.DataFrame], first: list[str], sentence: Callable[[dict[str, Any]], str]) -> pd.DataFrame:

@@ -75,6 +75,7 @@ def _compute(recorded: RecordedStudy, plan: AnalysisPlan, trials: pd.DataFrame) 
     ttests = _t_tests(used, plan, said)
     planned = planned_tests(plan) if len(used) else ()
     tested = [_attempt(said, f"{name} cannot be run", run, used) for name, run in planned]
+    said += [complaint for test in tested if test is not None for complaint in test.complaints]
     if len(table) and any(":" in e for e in table.loc[table["p_gg"] < ALPHA, "effect"]):
         notes.append(
             "An interaction is significant: comparisons of a main effect inside it average over the "

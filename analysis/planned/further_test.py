@@ -17,6 +17,7 @@ class FurtherTest:
     more: pd.DataFrame = field(default_factory=pd.DataFrame)  # diagnostics, contrasts, participants
     facts: dict[str, float] = field(default_factory=dict)  # of the fit and its checks
     notes: tuple[str, ...] = ()
+    complaints: tuple[str, ...] = ()  # on what of it could not be run
 
 
 def worth_saying(notes: Iterable[str]) -> tuple[str, ...]:

@@ -96,12 +96,14 @@ def _carried_out(results: PlannedResults) -> AnalysisPlan:
     """The plan without the tests that could not be run, of which a Methods section says nothing."""
     plan, ran = results.plan, {test.kind for test in results.further}
     tested = set(zip(results.ttests["factor"], results.ttests["reference"], strict=True))
+    tables = [test.table for test in results.further if test.kind == "comparisons"]
+    compared = {row for one in tables for row in one[["factor", "each", "where"]].itertuples(index=False, name=None)}
     return replace(
         plan,
         within=plan.within if results.means is not None else (),
         between=plan.between if results.means is not None else (),
         t_tests=tuple(test for test in plan.t_tests if (test.each, test.label) in tested),
-        comparisons=plan.comparisons if "comparisons" in ran else (),
+        comparisons=tuple(t for t in plan.comparisons if (t.factor or "", t.each or "", t.where or "") in compared),
         pairs=plan.pairs if "pairs" in ran else (),
         proportions=plan.proportions if "proportions" in ran else (),
         d_prime=plan.d_prime if "d_prime" in ran else None,

@@ -187,6 +187,8 @@ def _figures(study: Study, plan: FurtherAnalysis, at: Place) -> Iterator[Mistake
             yield Mistake(where, "a figure of the regression needs a regression in this analysis")
         if figure.panels is not None and figure.panels not in study.analysis.groups:
             yield Mistake((*where, "panels"), no_such(figure.panels, study.analysis.groups, "name under groups"))
+        if figure.kind == "interaction" and figure.lines is not None and figure.lines == figure.x:
+            yield Mistake((*where, "lines"), f"{figure.lines} is on the x axis already; name another factor")
         if figure.kind == "interaction" and figure.lines is None:
             yield Mistake(where, "an interaction needs lines: the factor drawn as lines")
         if figure.reference is not None and figure.reference not in labels:

@@ -190,6 +190,7 @@ WRONG = {
     "  heights: {F1: 1.7}": "walk_ratio needs no heights",
     "  figures: [{kind: raincloud}]": "needs x",
     "  figures: [{kind: order, x: no_such}]": "no_such is no factor",
+    "  figures: [{kind: interaction, x: actor, lines: actor}]": "actor is on the x axis already",
 }
 
 

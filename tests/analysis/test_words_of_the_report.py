@@ -18,9 +18,10 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
-from analysis import AnalysisOutcome, AnalysisWarning, analyse, apa
+from analysis import AnalysisError, AnalysisOutcome, AnalysisWarning, analyse, apa
 from analysis.figures.drawing import settings
 from analysis.figures.interaction import interaction
+from analysis.planned.comparison_tests import comparison_tests
 from analysis.planned.further_tests import planned_tests
 from analysis.planned.plan import plan_of
 from analysis.report.latex import _table
@@ -131,6 +132,23 @@ def test_the_methods_claim_only_what_was_run(tmp_path: Path) -> None:
     for claim in ("analysis of variance", "Planned comparisons", "two one-sided tests", "aligned rank"):
         assert claim not in page.split("Method\n")[1].split("Cell means")[0]
     assert "None of the planned tests could be run." in page
+
+
+def test_a_planned_t_test_that_cannot_be_run_does_not_take_the_others_with_it() -> None:
+    """Two people, one in each group: their conditions can be compared, the groups cannot."""
+    plan = plan_of({
+        "factors": {"pace": ["slow", "fast"]},
+        "participants": {"between": {"sex": ["female", "male"]}},
+        "analysis": {"measure": "y", "t_tests": [{"independent": "sex"}, {"paired": "pace"}]},
+    })  # fmt: skip
+    rows = [("P1", "female", "slow", 1.0), ("P1", "female", "fast", 3.0), ("P2", "male", "slow", 2.0)]
+    used = pd.DataFrame([*rows, ("P2", "male", "fast", 7.0)], columns=["participant", "sex", "pace", "y"])
+    test = comparison_tests(used, plan)
+    # by hand: differences -2 and -5 have mean -3.5 and SD 3 / sqrt(2), so t(1) = -3.5 / 1.5
+    assert test.table[["test", "t", "df"]].values.tolist() == [["paired", pytest.approx(-7 / 3), 1.0]]
+    assert [c.split(" cannot")[0] for c in test.complaints] == ["The t tests of sex"]
+    with pytest.raises(AnalysisError, match="too few"):
+        comparison_tests(used[used["sex"] == "male"], plan)
 
 
 def test_a_test_that_leaves_somebody_out_says_so_beside_its_result() -> None:
