@@ -19,7 +19,7 @@ from stimuli.body_generator.polygons import settled
 from stimuli.skeleton import Floats
 
 # place across the palm (towards the thumb), phalanges, radius, bend at the knuckle in degrees; index to little finger.
-# Lengths of a hand of 19.3 cm after Buryanov & Kotiuk 2010 (Morphologie 94), who measured them on radiographs.
+# Lengths of the phalanges after Buryanov & Kotiuk (Int. J. Morphol. 28, 2010), who measured them on radiographs.
 _FINGERS = (
     (3.08, (3.98, 2.24, 1.58), 0.96, 17.0),
     (1.03, (4.46, 2.63, 1.74), 0.97, 21.0),
