@@ -5,6 +5,7 @@ Exit status: 0 fine, 1 something failed, 2 wrong usage or study file.
 
 from __future__ import annotations
 
+import logging
 import sys
 
 from cyclopts import App
@@ -43,6 +44,7 @@ def main() -> None:
 
 def run(arguments: list[str]) -> int:
     """Runs one command and returns its exit status; every foreseeable problem is one sentence, never a traceback."""
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # where nothing can be cached it makes a speech, and draws
     try:
         result = app(arguments, exit_on_error=False, print_error=True, result_action="return_value")
         return result if isinstance(result, int) else 0

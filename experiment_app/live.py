@@ -105,7 +105,7 @@ def run_live(
     old = None if new_run else unfinished_run(data, file.study.study, participant)
     if old is None:
         refuse_another_study(headers, file, data)
-    tell_changes(headers, file, say)
+    tell_changes([header for header in headers if header["participant"] != participant], file, say)
     if old is not None and seed is not None:
         raise UsageError(f"--seed: participant {participant} has an unfinished run, which keeps its own order.")
     if old is not None and not _continues(old, file, resume, ask, say):

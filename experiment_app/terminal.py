@@ -27,9 +27,13 @@ class ShowProgress(Protocol):
 
 
 def typed(path: object) -> str:
-    """A path as it is typed in a command: in quotes where a blank or a sign would part it, for sh and Windows alike."""
-    plain = all(sign.isalnum() or sign in "-_./\\:+,@%=~" for sign in str(path))
-    return str(path) if plain else f'"{path}"'
+    """A path as it is typed in a command: in quotes where a blank or a sign would part it, for sh and Windows alike.
+
+    With ./ before a dash, which would make it an option.
+    """
+    text = f"./{path}" if str(path).startswith("-") else str(path)
+    plain = all(sign.isalnum() or sign in "-_./\\:+,@%=~" for sign in text)
+    return text if plain else f'"{text}"'
 
 
 def say(sentence: str) -> None:

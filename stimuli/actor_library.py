@@ -25,7 +25,7 @@ from stimuli.gait import Gait
 from stimuli.gait_model import COEFFICIENTS, SIGNALS, WalkCurves
 from stimuli.retarget import Figure, scaled, walk_cycle
 from stimuli.skeleton import Floats
-from stimuli.user_folder import user_folder
+from stimuli.user_folder import make_user_folder, user_folder
 
 VERSION = 2
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
@@ -116,7 +116,7 @@ def stored(actor: StoredActor, library: Path | None = None) -> Path:
 
 def write_whole(path: Path, **arrays: Any) -> None:
     """Writes arrays into an npz file that is there whole or not at all, even if the power fails."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_user_folder(path.parent, "actors")
     handle, temporary = tempfile.mkstemp(prefix=".", suffix=".part", dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as stream:

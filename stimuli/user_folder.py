@@ -19,3 +19,14 @@ def user_folder(kind: str) -> Path:
     else:
         data = Path(os.environ.get("XDG_DATA_HOME", Path.home() / ".local" / "share"))
     return data / "gaitlab" / kind
+
+
+def make_user_folder(folder: Path, kind: str) -> None:
+    """Makes a folder for imported things of a kind; raises OSError with the way out where nothing can be kept in it."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        why = "" if os.access(folder, os.W_OK) else "Permission denied"
+    except OSError as error:
+        why = str(error.strerror)
+    if why:
+        raise OSError(f"{folder} cannot be written ({why}); name another folder with GAITLAB_{kind.upper()}.")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from stimuli.bodies.point_light import FIGURES
 from stimuli.body_files.errors import BodyError
-from stimuli.user_folder import user_folder
+from stimuli.user_folder import make_user_folder, user_folder
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
 MATCHED, MISMATCHED = "matched", "mismatched"
@@ -49,7 +49,7 @@ def stored(data: bytes, name: str, replace: bool = False) -> Path:
     if not replace and name in imported_names():
         raise BodyError(f"there is a body {name} already; choose another name, or say --replace")
     folder = library_folder()
-    folder.mkdir(parents=True, exist_ok=True)
+    make_user_folder(folder, "bodies")
     handle, temporary = tempfile.mkstemp(prefix=".", suffix=".part", dir=folder)
     try:
         with os.fdopen(handle, "wb") as stream:

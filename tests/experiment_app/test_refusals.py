@@ -145,6 +145,15 @@ def test_commands_that_are_told_can_be_typed_whatever_is_in_their_paths(tmp_path
     assert f'gaitlab analyse "{data / "walk_ratio"}"' in " ".join(capfd.readouterr().out.split())
 
 
+def test_a_told_command_with_a_folder_that_begins_with_a_dash_can_be_typed(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    assert run(["simulate", "walk_ratio", "--participants", "1", "--data=-sim"]) == 0
+    (told,) = [line for line in capfd.readouterr().out.splitlines() if "gaitlab analyse" in line]
+    command = told.split("gaitlab ")[1].split()
+    assert command[1] == "./-sim/walk_ratio"
+    assert run(command) == 0
+
+
 def test_a_file_where_a_folder_for_results_should_be_is_told(tmp_path, capfd):
     play(opened(tmp_path))
     (tmp_path / "out").write_text("mine")

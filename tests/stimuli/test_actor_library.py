@@ -13,6 +13,7 @@ from stimuli.actor_library import (
     stored,
 )
 from stimuli.actors import ActorError, Person
+from stimuli.bodies import imported_bodies
 from stimuli.gait import Gait
 from stimuli.gait_model import Step, WalkCurves, load_gait_model
 from stimuli.measure import delivered_gait
@@ -99,3 +100,13 @@ def test_an_imported_actor_is_known_wherever_default_ones_are(tmp_path, monkeypa
     stored(actor(), tmp_path)
     assert actor_names()[-1] == "anna"
     assert load_actor("anna").height == 1.7
+
+
+def test_a_library_that_cannot_be_written_is_named_with_the_way_out(tmp_path, monkeypatch):
+    (tmp_path / "home").write_text("a file where a folder should be")
+    monkeypatch.setenv("GAITLAB_ACTORS", str(tmp_path / "home" / "actors"))
+    with pytest.raises(OSError, match=r"actors cannot be written \(Not a directory\); .* with GAITLAB_ACTORS\."):
+        stored(actor())
+    monkeypatch.setenv("GAITLAB_BODIES", str(tmp_path / "home" / "bodies"))
+    with pytest.raises(OSError, match=r"bodies cannot be written \(Not a directory\); .* with GAITLAB_BODIES\."):
+        imported_bodies.stored(b"glb", "anna")
