@@ -26,6 +26,9 @@ from stimuli.skeleton import JOINTS
 
 Floats = NDArray[np.floating]
 
+JUMP = 20.0
+"""m/s; in the captures no joint is faster than 10, and one wrong frame is ten times that."""
+
 FAR_TURN = np.radians(25.0)  # rad between neighbouring frames; a fast walker's shank turns 6 degrees in 1/120 s
 LEAST_TRAVEL = 0.5  # m, less is standing or a treadmill
 
@@ -155,4 +158,19 @@ def _body_warnings(clip: Clip, positions: Floats) -> tuple[str, ...]:
                 f"the first frame differs from the second by up to {np.degrees(np.max(turns)):.0f} degrees and may "
                 f"be an added T-pose; it was kept, give skip_frames 1 to leave it out"
             )
-    return tuple(warnings)
+    return (*warnings, *_jumps(clip, positions))
+
+
+def _jumps(clip: Clip, positions: Floats) -> tuple[str, ...]:
+    """A sentence about the furthest jump of a joint after the second frame, if one goes faster than anybody moves."""
+    played = sorted(clip.roles.values())
+    if clip.frame_count < 3 or not played:
+        return ()
+    ways = np.linalg.norm(np.diff(positions[1:, played], axis=0), axis=2)
+    frame, joint = np.unravel_index(int(np.argmax(ways)), ways.shape)
+    if ways[frame, joint] * clip.rate <= JUMP:
+        return ()
+    return (
+        f"from frame {frame + 2} to {frame + 3} {clip.joints[played[joint]]} jumps by {ways[frame, joint]:.2f} m; "
+        f"fill that gap and export again, or cut it off",
+    )

@@ -148,6 +148,18 @@ def test_newlines_and_trailing_blanks_do_not_matter(tmp_path, newline):
     assert read_bvh(written(tmp_path, newline=newline)).frame_count == 1
 
 
+def test_a_frame_in_which_a_joint_jumps_is_told(tmp_path):
+    """From 100 to 400 cm ahead and back within a frame; walking on at 1 cm a frame is no jump."""
+    ahead = [100, 101, 102, 400, 104, 105]
+    clip = read_bvh(written(tmp_path, frames=[f"0 92 {z}" + " 0" * 21 for z in ahead]))
+    told = [warning for warning in clip.warnings if "jumps" in warning]
+    assert len(told) == 1
+    assert told[0].startswith("from frame 3 to 4 ")
+    assert "2.98 m" in told[0]
+    steady = read_bvh(written(tmp_path, frames=[f"0 92 {100 + n}" + " 0" * 21 for n in range(6)]))
+    assert not any("jumps" in warning for warning in steady.warnings)
+
+
 def test_numbers_in_every_notation_are_read(tmp_path):
     frame = "5.1072e-06 92 -9.23872e-007 -0 0 -4.575" + " 0" * 18
     assert world_positions(read_bvh(written(tmp_path, frames=[frame])))[0, 0, 1] == pytest.approx(0.92)
