@@ -36,7 +36,7 @@ from experiment_app.opening import (
     unfinished_run,
 )
 from experiment_app.participants.arrivals import first_headers
-from experiment_app.participants.earlier import refuse_another_study, refuse_lookalike, tell_changes
+from experiment_app.participants.earlier import default_data, refuse_another_study, refuse_lookalike, tell_changes
 from experiment_app.run_folder import Run, check_participant
 from experiment_app.staging import crowd_of, making_of
 from experiment_app.terminal import typed
@@ -84,7 +84,7 @@ def open_window(title: str, screen: ScreenOptions) -> DesktopWindow:
 def run_live(
     study: str,
     participant: str,
-    data: Path,
+    data: Path | None,
     *,
     screen: ScreenOptions,
     trigger: str = "",
@@ -99,6 +99,7 @@ def run_live(
     """Runs the study with a participant and returns the exit status; see the command's help for the arguments."""
     check_participant(participant)
     file = checked_study(study)
+    data = data or default_data(study, file.study.study, pilot)
     refuse_mixed(data, file.study.study, kind_of(False, pilot))
     headers = first_headers(data, file.study.study)
     refuse_lookalike(headers, participant)

@@ -69,7 +69,7 @@ def run_study(
         devices=tuple(devices or ()), photodiode=photodiode,
     )  # fmt: skip
     return run_live(
-        study, participant, data or Path("pilot" if pilot else "data"), screen=screen, trigger=trigger, lsl=lsl,
+        study, participant, data, screen=screen, trigger=trigger, lsl=lsl,
         seed=seed, new_run=new_run, pilot=pilot, resume=resume, ask=_ask, say=say,
     )  # fmt: skip
 

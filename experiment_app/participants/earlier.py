@@ -12,6 +12,8 @@ from typing import Any
 
 from experiment_app.errors import UsageError
 from experiment_app.imports import imported
+from experiment_app.run_folder import study_folder
+from experiment_app.terminal import typed
 from protocols.study_file import StudyFile
 from protocols.versions import another_study, what_differs
 
@@ -37,6 +39,22 @@ def refuse_another_study(headers: Sequence[Header], file: StudyFile, data: Path)
                 "they would stand in one table. Give this one a name of its own under `study:`, or choose another "
                 "folder with --data."
             )
+
+
+def default_data(study: str, name: str, pilot: bool) -> Path:
+    """The folder of data where none is named: here. study: the study file as it was named; name: of the study.
+
+    Raises UsageError when this study has none here but one beside its file, as after a change of the working folder:
+    who came back would begin anew, and the order of arrival too.
+    """
+    here = Path("pilot" if pilot else "data")
+    beside = Path(study).parent / here
+    if study_folder(beside, name).is_dir() and not study_folder(here, name).is_dir():
+        raise UsageError(
+            f"there are no data of {name} in this working folder, but in {study_folder(beside, name)}. Say --data "
+            f"{typed(beside)} to go on there, or --data {here} to begin a new folder here."
+        )
+    return here
 
 
 def refuse_lookalike(headers: Sequence[Header], participant: str) -> None:

@@ -14,12 +14,13 @@ from pathlib import Path
 import pytest
 
 from experiment_app import opening
+from experiment_app.command import run as run_command
 from experiment_app.errors import RunError, UsageError
 from experiment_app.live import ScreenOptions, run_live
 from experiment_app.loop import run_session
 from experiment_app.opening import open_new
 from experiment_app.participants.arrivals import first_headers
-from experiment_app.participants.earlier import refuse_lookalike, tell_changes
+from experiment_app.participants.earlier import default_data, refuse_lookalike, tell_changes
 from experiment_app.run_folder import participant_runs
 from experiment_app.simulated.observer import SimulatedParticipant, draw_observer
 from experiment_app.windows.undrawn import UndrawnWindow
@@ -281,6 +282,22 @@ def test_an_id_that_differs_in_case_or_zeros_only_is_refused_with_the_one_there_
         return
     with pytest.raises(UsageError, match=f"there is a participant {known} already"):
         refuse_lookalike([{"participant": known}], new)
+
+
+def test_data_beside_the_study_file_are_not_split_by_a_run_from_another_working_folder(tmp_path, monkeypatch, capfd):
+    lab, here = tmp_path / "my lab", tmp_path / "desktop"
+    here.mkdir()
+    open_new(short(), "P01", lab / "data", display={}, simulated=False).journal.close()
+    (lab / "s.yaml").write_text(short().text, encoding="utf-8")
+    monkeypatch.chdir(here)
+    assert default_data("walk_ratio", "walk_ratio", False) == Path("data")
+    assert default_data("../my lab/s.yaml", "walk_ratio", True) == Path("pilot")
+    with pytest.raises(UsageError, match=r'Say --data "../my lab/data" to go on there, or --data data to begin'):
+        default_data("../my lab/s.yaml", "walk_ratio", False)
+    assert run_command(["run", "../my lab/s.yaml", "--participant", "P01"]) == 2
+    assert "no data of walk_ratio in this working folder" in " ".join(capfd.readouterr().err.split())
+    Path("data/walk_ratio").mkdir(parents=True)
+    assert default_data("../my lab/s.yaml", "walk_ratio", False) == Path("data")
 
 
 def test_who_took_part_with_another_version_of_the_study_file_is_told_with_what_differs(tmp_path):
