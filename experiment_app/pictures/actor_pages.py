@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -210,7 +211,7 @@ def _draw_numbers(axis: Any, actor: Actor, rows: Sequence[QualityRow]) -> None:
         "",
         f"comfort speed        {actor.comfort_speed:.2f} m/s",
         f"walk ratio           {actor.captured_walk_ratio:.5f} m·min",
-        f"  {actor.walk_ratio_source}",
+        *textwrap.wrap(actor.walk_ratio_source, 34, initial_indent="  ", subsequent_indent="  "),
         *_capture_lines(actor),
     ]
     axis.text(0, 1, "\n".join(lines), va="top", family="monospace", fontsize=9)
