@@ -13,7 +13,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from experiment_app.journal import append_line
-from experiment_app.participants.arrivals import WITHDRAWN, header_of, journals, places_given_back, unknown_participant
+from experiment_app.participants.arrivals import (
+    WITHDRAWN,
+    arrivals,
+    header_of,
+    journals,
+    places_given_back,
+    unknown_participant,
+)
 from experiment_app.participants.derived import Derived, derived
 from experiment_app.run_folder import JOURNAL, check_participant, lock
 from protocols.record import Withdrawn, encode_line
@@ -86,7 +93,7 @@ def withdraw(plan: Withdrawal, remake: Callable[[Derived], None], say: Callable[
     shutil.rmtree(leaving)
     say(f"Removed participant {plan.participant} from {plan.folder / 'sourcedata'} (files: {plan.files}).")
     if place is not None:
-        say(f"Place {place} in the order of arrival is free again; the next new participant takes it.")
+        say(_what_becomes_of(plan.folder, place))
     whole, nobody = True, not journals(plan.folder)
     done = "Removed, since nobody is left in it" if nobody else f"Made again without participant {plan.participant}"
     for made in plan.made:
@@ -101,6 +108,14 @@ def withdraw(plan: Withdrawal, remake: Callable[[Derived], None], say: Callable[
         say(f"No longer there: {made.sentence}. If it was moved, it still holds {plan.participant}: delete it.")
     say("Copies made by hand, backups and anything published are out of reach; ask whoever keeps them.")
     return whole
+
+
+def _what_becomes_of(folder: Path, place: int) -> str:
+    """What is said of a place that was given back; where data of several computers meet, another may have it too."""
+    others = [one.participant for one in arrivals(folder.parent, folder.name) if one.place == place]
+    if others:
+        return f"Place {place} in the order of arrival stays taken: {', '.join(others)} has it too."
+    return f"Place {place} in the order of arrival is free again; the next new participant takes it."
 
 
 def _free_name(path: Path) -> Path:

@@ -168,3 +168,13 @@ def test_a_report_by_another_plan_is_made_again_by_that_plan(data, tmp_path):
     assert (report / "aligned_rank_transform.csv").exists()
     assert (report / "plan.yaml").read_text(encoding="utf-8") == text
     assert "that of plan.yaml beside this report" in (report / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_place_that_somebody_of_another_computer_has_too_is_not_called_free(data, tmp_path, capfd):
+    play(opened(tmp_path / "second", "X01"))
+    play(opened(tmp_path / "second", "X02"))
+    shutil.copytree(tmp_path / "second/walk_ratio/sourcedata/sub-X02", data / "sourcedata" / "sub-X02")
+    assert run(["withdraw", str(data), "--participant", "WITHDRAWN77", "--yes"]) == 0
+    said = capfd.readouterr().out
+    assert "Place 2 in the order of arrival stays taken: X02 has it too." in said
+    assert "free again" not in said
