@@ -114,7 +114,7 @@ def _what_becomes_of(folder: Path, place: int) -> str:
     """What is said of a place that was given back; where data of several computers meet, another may have it too."""
     others = [one.participant for one in arrivals(folder.parent, folder.name) if one.place == place]
     if others:
-        return f"Place {place} in the order of arrival stays taken: {', '.join(others)} has it too."
+        return f"Place {place} in the order of arrival stays taken, by {', '.join(others)}."
     return f"Place {place} in the order of arrival is free again; the next new participant takes it."
 
 

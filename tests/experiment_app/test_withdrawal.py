@@ -176,5 +176,5 @@ def test_a_place_that_somebody_of_another_computer_has_too_is_not_called_free(da
     shutil.copytree(tmp_path / "second/walk_ratio/sourcedata/sub-X02", data / "sourcedata" / "sub-X02")
     assert run(["withdraw", str(data), "--participant", "WITHDRAWN77", "--yes"]) == 0
     said = capfd.readouterr().out
-    assert "Place 2 in the order of arrival stays taken: X02 has it too." in said
+    assert "Place 2 in the order of arrival stays taken, by X02." in said
     assert "free again" not in said
