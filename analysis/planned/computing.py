@@ -110,7 +110,8 @@ def _all_excluded(trials: pd.DataFrame, plan: AnalysisPlan) -> str:
 def _checks(used: pd.DataFrame, plan: AnalysisPlan) -> pd.DataFrame:
     return assumptions(
         used, plan.measure, "participant", plan.within, plan.between,
-        trial="trial", start=plan.start if plan.start in plan.within else None, levels=plan.levels,
+        trial=None if plan.adaptive else "trial",  # the answers of a track drift by design
+        start=plan.start if plan.start in plan.within else None, levels=plan.levels,
     )  # fmt: skip
 
 

@@ -3,24 +3,32 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from analysis import apa
 from analysis.planned.results import ALPHA, PlannedResults, unit_decimals
 from analysis.report.latex_further import further_rows, p_text
 
 _SPECIAL = {
-    "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
-    "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "−": "$-$", "×": r"$\times$", "<": "$<$", ">": "$>$",
-    "·": r"$\cdot$", "–": "--", "±": r"$\pm$", "≤": r"$\le$", "≥": r"$\ge$", "≠": r"$\ne$", "′": "$'$",
+    "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_\allowbreak{}",
+    "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "−": "$-$", "×": r"$\times$",
+    "<": "$<$", ">": "$>$", "·": r"$\cdot$", "–": "--", "±": r"$\pm$", "≤": r"$\le$", "≥": r"$\ge$",
+    "≠": r"$\ne$", "′": "$'$",
 }  # fmt: skip
 
-WIDEST = 72
+WIDEST = 66
 """Characters of a row, beyond which its label is broken into lines, so that a page of 12 cm holds the table."""
 
 
+PAGE = 345.0
+"""Points of a line of LaTeX's article, the narrowest page that people use."""
+
+SMALL, SMALLER = r"\small\setlength{\tabcolsep}{4pt}", r"\footnotesize\setlength{\tabcolsep}{3pt}"
+
 LONGEST = 42
-"""Rows of a table that a page holds; a longer one goes on over the next (longtable)."""
+"""Lines of a table that a page holds; a longer one goes on over the next (longtable)."""
 
 
 def escaped(text: object) -> str:
@@ -31,7 +39,8 @@ def escaped(text: object) -> str:
 def latex_tables(results: PlannedResults) -> str:
     r"""ANOVA, t tests, significant pairs, every further test as tables.
 
-    The first line says which packages they need: booktabs, and longtable where one is longer than a page.
+    The first line says which packages they need: booktabs; array and longtable where one is wider or longer
+    than a page.
     """
     parts: list[str] = []
     plan, decimals = results.plan, unit_decimals(results)
@@ -66,12 +75,16 @@ def latex_tables(results: PlannedResults) -> str:
             for r in pairs.to_dict("records")
         ]  # fmt: skip
         head = ["Effect", "a", "b", "a $-$ b", "$t$", "df", "$p$"]
-        parts.append(_table(f"Pairs that differ (p adjusted: {(plan.adjust or 'none').capitalize()})", head, rows))
+        parts.append(
+            _table(f"Pairs that differ (p adjusted: {(plan.adjust or 'none').capitalize()})", head, rows, texts=3)
+        )
     for test in results.further:
         if (written := further_rows(test)) is not None:
             caption, head, body = written
             parts.append(_table(f"{plan.label}: {caption[:1].lower()}{caption[1:]}", head, body))
-    packages = "booktabs,longtable" if any("longtable" in part for part in parts) else "booktabs"
+    packages = "booktabs"
+    for package, command in (("array", r"\arraybackslash"), ("longtable", r"\begin{longtable}")):
+        packages += f",{package}" if any(command in part for part in parts) else ""
     return "\n\n".join([f"% \\usepackage{{{packages}}}; written by gaitlab", *parts]) + "\n"
 
 
@@ -79,22 +92,45 @@ def _share(value: float) -> str:
     return apa.share(value) if math.isfinite(value) else "–"
 
 
-def _table(caption: str, head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    body = [[escaped(cell) for cell in row] for row in rows]
-    label = "l"
-    if sum(max(len(str(row[column])) for row in rows) for column in range(len(head))) > WIDEST:
-        label = r"p{0.27\linewidth}"
-        body = [[rf"\raggedright {first}", *others] for first, *others in body]
-    columns = label + "r" * (len(head) - 1)
-    if len(rows) > LONGEST:
+@dataclass(frozen=True)
+class _Form:
+    """How a table is set: its size, the columns, and how many lines of the page its rows take."""
+
+    size: str
+    columns: str
+    lines: int
+
+
+def _form(head: Sequence[str], rows: Sequence[Sequence[object]], texts: int) -> _Form:
+    """As wide as its cells where the page holds them; else its first `texts` columns are broken into lines."""
+    plain = [re.sub(r"\\[a-z]+|[$\\{}^_]", "", title) for title in head]
+    widths = [max(len(str(row[column])) for row in [plain, *rows]) for column in range(len(head))]
+    if sum(widths) <= WIDEST:
+        return _Form(SMALL, "l" * texts + "r" * (len(head) - texts), len(rows))
+    numbers, gaps = sum(widths[texts:]), len(head) - 1
+    size, character, share = SMALL, 4.9, (PAGE - 4.9 * numbers - 8.0 * gaps) / texts  # points
+    if share < 0.2 * PAGE:
+        size, character, share = SMALLER, 4.4, (PAGE - 4.4 * numbers - 6.0 * gaps) / texts
+    share = min(max(share, 0.12 * PAGE), 0.3 * PAGE)
+    lines = sum(max(math.ceil(character * len(str(cell)) / share) for cell in row[:texts]) for row in rows)
+    broken = rf">{{\raggedright\arraybackslash}}p{{{share / PAGE:.2f}\linewidth}}" * texts
+    return _Form(size, broken + "r" * (len(head) - texts), lines)
+
+
+def _table(caption: str, head: Sequence[str], rows: Sequence[Sequence[object]], texts: int = 1) -> str:
+    """texts: how many columns, from the left, hold words."""
+    form = _form(head, rows, texts)
+    titles = " & ".join(head) + r" \\"
+    body = [" & ".join(escaped(cell) for cell in row) + r" \\" for row in rows]
+    if form.lines > LONGEST:
         return "\n".join([
-            r"\begingroup\small\setlength{\tabcolsep}{4pt}", rf"\begin{{longtable}}{{@{{}}{columns}@{{}}}}",
-            rf"\caption{{{escaped(caption)}}}\\", r"\toprule", " & ".join(head) + r" \\", r"\midrule", r"\endfirsthead",
-            r"\toprule", " & ".join(head) + r" \\", r"\midrule", r"\endhead", r"\bottomrule", r"\endfoot",
-            *(" & ".join(row) + r" \\" for row in body), r"\end{longtable}", r"\endgroup",
+            rf"\begingroup{form.size}", rf"\begin{{longtable}}{{@{{}}{form.columns}@{{}}}}",
+            rf"\caption{{{escaped(caption)}}}\\", r"\toprule", titles, r"\midrule", r"\endfirsthead",
+            r"\toprule", titles, r"\midrule", r"\endhead", r"\bottomrule", r"\endfoot", *body,
+            r"\end{longtable}", r"\endgroup",
         ])  # fmt: skip
     return "\n".join([
-        r"\begin{table}", r"\centering\small\setlength{\tabcolsep}{4pt}", rf"\caption{{{escaped(caption)}}}",
-        rf"\begin{{tabular}}{{@{{}}{columns}@{{}}}}", r"\toprule", " & ".join(head) + r" \\", r"\midrule",
-        *(" & ".join(row) + r" \\" for row in body), r"\bottomrule", r"\end{tabular}", r"\end{table}",
+        r"\begin{table}", rf"\centering{form.size}", rf"\caption{{{escaped(caption)}}}",
+        rf"\begin{{tabular}}{{@{{}}{form.columns}@{{}}}}", r"\toprule", titles, r"\midrule", *body, r"\bottomrule",
+        r"\end{tabular}", r"\end{table}",
     ])  # fmt: skip

@@ -80,9 +80,9 @@ FORMS: Mapping[str, TableForm] = {
         "": lambda r: _inside(r, "by"), "Difference": _difference, r"95 \% CI": _limits_of_difference,
         **T, "$d$": _number("d_av"),
     }),
-    "proportions": TableForm("Proportions against chance", {
+    "proportions": TableForm("Proportions against chance, with Wilson limits", {
         "": lambda r: ", ".join(filter(None, [r["label"], r["level"]])), "Trials": lambda r: f"{r['k']}/{r['trials']}",
-        r"\%": _percent("proportion"), r"95 \% CI (Wilson)": _limits("wilson_low", "wilson_high", 100.0),
+        r"\%": _percent("proportion"), r"95 \% CI": _limits("wilson_low", "wilson_high", 100.0),
         "exact $p$": _p("p_exact"), **T,
     }),
     "d_prime": TableForm("Sensitivity", {
