@@ -18,10 +18,6 @@ _SPECIAL = {
     "≠": r"$\ne$", "′": "$'$",
 }  # fmt: skip
 
-WIDEST = 66
-"""Characters of a row, beyond which its label is broken into lines, so that a page of 12 cm holds the table."""
-
-
 PAGE = 345.0
 """Points of a line of LaTeX's article, the narrowest page that people use."""
 
@@ -101,18 +97,23 @@ class _Form:
     lines: int
 
 
+def _points(text: object) -> float:
+    """About how wide a text is in Computer Modern of 9 points, as `small` in an article is."""
+    return sum(2.6 if c in " .,:;()[]il" else 7.4 if c in "−×<>±≤≥≠" else 4.7 for c in str(text))
+
+
 def _form(head: Sequence[str], rows: Sequence[Sequence[object]], texts: int) -> _Form:
     """As wide as its cells where the page holds them; else its first `texts` columns are broken into lines."""
     plain = [re.sub(r"\\[a-z]+|[$\\{}^_]", "", title) for title in head]
-    widths = [max(len(str(row[column])) for row in [plain, *rows]) for column in range(len(head))]
-    if sum(widths) <= WIDEST:
+    widths = [max(_points(row[column]) for row in [plain, *rows]) for column in range(len(head))]
+    gaps = len(head) - 1
+    if sum(widths) + 8 * gaps <= PAGE:
         return _Form(SMALL, "l" * texts + "r" * (len(head) - texts), len(rows))
-    numbers, gaps = sum(widths[texts:]), len(head) - 1
-    size, character, share = SMALL, 4.9, (PAGE - 4.9 * numbers - 8.0 * gaps) / texts  # points
+    size, scale, share = SMALL, 1.0, (PAGE - sum(widths[texts:]) - 8 * gaps) / texts
     if share < 0.2 * PAGE:
-        size, character, share = SMALLER, 4.4, (PAGE - 4.4 * numbers - 6.0 * gaps) / texts
-    share = min(max(share, 0.12 * PAGE), 0.3 * PAGE)
-    lines = sum(max(math.ceil(character * len(str(cell)) / share) for cell in row[:texts]) for row in rows)
+        size, scale, share = SMALLER, 8 / 9, (PAGE - 8 / 9 * sum(widths[texts:]) - 6 * gaps) / texts
+    share = min(max(share, 0.12 * PAGE), scale * max(widths[:texts]))
+    lines = sum(max(math.ceil(scale * _points(cell) / share) for cell in row[:texts]) for row in rows)
     broken = rf">{{\raggedright\arraybackslash}}p{{{share / PAGE:.2f}\linewidth}}" * texts
     return _Form(size, broken + "r" * (len(head) - texts), lines)
 

@@ -256,12 +256,12 @@ def test_every_test_has_a_table_for_latex(analysed, tmp_path):
     text = (analysed[0] / "tables.tex").read_text(encoding="utf-8")
     for caption in ("t tests", "planned pairs", "proportions against chance", "sensitivity", "thresholds of the psych"):
         assert f"\\caption{{Test chosen: {caption}" in text
-    assert text.count(r"\begin{tabular}") == text.count(r"\end{tabular}") == 8
-    tables = re.findall(r"\\begin\{tabular\}\{@\{\}(?:l|p\{[^}]*\})(r+)@\{\}\}(.*?)\\end", text, re.S)
+    assert len(re.findall(r"\\begin\{(tabular|longtable)\}", text)) == 8
+    tables = re.findall(r"\\begin\{(?:tabular|longtable)\}\{@\{\}(.*?)(r+)@\{\}\}(.*?)\\end\{", text, re.S)
     assert len(tables) == 8
-    for numbers, body in tables:
-        rows = [row for row in body.splitlines() if row.endswith(r"\\")]
-        assert {row.count("&") for row in rows} == {len(numbers)}
+    for texts, numbers, body in tables:
+        rows = [row for row in body.splitlines() if row.endswith(r"\\") and not row.startswith(r"\caption")]
+        assert {row.count("&") for row in rows} == {len(numbers) + (texts.count("p{") or len(texts)) - 1}
 
 
 def test_recorded_gaze_shares_are_analysed_part_by_part(tmp_path):
