@@ -7,6 +7,7 @@ colours' shade, normals and joints from the vertices around. Made when bodies ar
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,8 @@ SMALL = ("eye", "iris", "pupil", "lash", "brow", "lip", "laces", "soles")
 LEAST = 6  # triangles of a surface
 PULLS = (5, 3, 4, 6, 7, 8)  # how fast edges are collapsed (fast-simplification's `agg`)
 HAIR_LIFT = 0.008  # m, so that the corners of a coarse head do not stick out of coarse hair
+COVERS = ("shirt", "trousers", "shoes", "hair")
+SKIN_SINKS = 0.02  # m, under cloth and hair, so that its coarse triangles do not stick out of theirs
 
 
 def simplified(surface: Surface, share: float, carriers: int) -> Surface:
@@ -104,7 +107,18 @@ def _heaviest(weights: Floats, carriers: int) -> tuple[np.ndarray, Floats]:
 def coarse_levels(name: str, hair: str) -> list[list[Surface]]:
     """LEVELS levels of a body with a haircut."""
     surfaces = [surface for surface in load_body(name, hair).levels[-1] if surface.name not in SMALL]
-    return [[simplified(surface, *share) for surface in surfaces] for share in SHARES]
+    covers = [surface for surface in surfaces if surface.name in COVERS]
+    levels = [[simplified(surface, *share) for surface in surfaces] for share in SHARES]
+    return [[_sunk(coarse, covers) if coarse.name == "skin" else coarse for coarse in level] for level in levels]
+
+
+def _sunk(skin: Surface, covers: Sequence[Surface]) -> Surface:
+    """Skin that gives way where the nearest cloth or hair of the finer body lies outside it."""
+    cloth = np.concatenate([cover.positions for cover in covers])
+    outwards = np.concatenate([cover.normals for cover in covers])
+    _, near = cKDTree(cloth).query(skin.positions)
+    under = np.sum((cloth[near] - skin.positions) * outwards[near], axis=1) > 0.0
+    return replace(skin, positions=skin.positions - SKIN_SINKS * under[:, None] * skin.normals)
 
 
 def main() -> None:

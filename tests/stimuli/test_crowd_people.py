@@ -8,7 +8,7 @@ import pytest
 from stimuli.actors import load_actor
 from stimuli.blend_tree import Leaf
 from stimuli.bodies.builds import GIRTHS
-from stimuli.bodies.known import load_body
+from stimuli.bodies.known import hair_names, load_body
 from stimuli.body_generator.crowd_levels import SMALL, coarse_levels
 from stimuli.crowds.bodies import KEPT, crowd_body
 from stimuli.crowds.looks import LOOKS, difference, farthest, linear_rgb, looks
@@ -132,3 +132,31 @@ def test_builds_differ_in_girth_and_not_in_height():
             max(s.positions[:, 1].max() for s in load_body("man", "short").levels[2]), abs=0.005
         )
     assert widths["slim"] < widths["medium"] < widths["stout"]
+
+
+@pytest.mark.parametrize(("name", "hair"), [(name, hair) for name in ("woman", "man") for hair in hair_names(name)])
+def test_the_nearest_coarse_body_shows_no_skin_where_the_finer_one_shows_its_shirt(name, hair):
+    """It did: a speck beside the collar, seen on every other shirt of a crowd."""
+    body = crowd_body(name, hair, "medium")
+    across, up = np.meshgrid(np.arange(-0.14, 0.141, 0.01), np.arange(0.6, 0.83, 0.006) * body.stature)
+    chest = np.column_stack([across.ravel(), up.ravel()])
+    finer, coarse = (
+        {surface.name: nearest_in_front(surface, chest) for surface in body.levels[level]} for level in (2, 3)
+    )
+    clothed = finer["shirt"] > finer["skin"]
+    assert clothed.sum() > 700
+    bare = np.isfinite(coarse["shirt"]) & (coarse["skin"] > coarse["shirt"])
+    assert not bare[clothed].any()
+
+
+def nearest_in_front(surface, places):
+    """z of a surface where somebody straight in front looks at places (P, 2) of x and y; -inf where it is not."""
+    depth = np.full(len(places), -np.inf)
+    for a, b, c in surface.positions[surface.triangles]:
+        edges = np.column_stack([b - a, c - a])[:2]
+        if abs(np.linalg.det(edges)) < 1e-12:
+            continue
+        u, v = np.linalg.solve(edges, (places - a[:2]).T)
+        z = a[2] + u * (b - a)[2] + v * (c - a)[2]
+        depth = np.where((u >= 0) & (v >= 0) & (u + v <= 1), np.maximum(depth, z), depth)
+    return depth
