@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from analysis.errors import AnalysisError
+from analysis.planned.computing import _checks
 from analysis.planned.plan import plan_of
 from analysis.planned.track_tests import track_tests
 
@@ -105,3 +106,15 @@ def test_a_track_that_never_turned_has_no_threshold_and_no_track_with_one_is_a_s
         track_tests(straight, asked, asked.adaptive)
     with pytest.raises(AnalysisError, match="which track"):
         track_tests(straight.drop(columns="track"), asked, asked.adaptive)
+
+
+def test_answers_that_drift_because_levels_follow_them_are_not_said_to_be_learning():
+    data = pd.DataFrame(
+        [(p, a, t, t % 3 + p * t) for p in range(4) for a in ("F1", "M1") for t in range(1, 7)],
+        columns=["participant", "actor", "trial", "y"],
+    )
+    analysis = {"measure": "y", "anova": {"within": ["actor"]}}
+    study = {"factors": {"actor": ["F1", "M1"], "level": [1, 2]}, "analysis": analysis}
+    placed = {"order": STAIRCASE}
+    assert "learning" in set(_checks(data, plan_of(study))["check"])
+    assert "learning" not in set(_checks(data, plan_of(study | placed))["check"])
