@@ -51,6 +51,7 @@ def read(folder: Path, name: str) -> tuple[dict[str, Any], pd.DataFrame, dict[st
 
 
 def anovas(folder: Path) -> Found:
+    """Every number of R's type III tables of the designs in a folder, beside ours."""
     for path in sorted(folder.glob("*.json")):
         if json.loads(path.read_text(encoding="utf-8")).get("kind") != "anova":
             continue
@@ -68,6 +69,7 @@ def anovas(folder: Path) -> Found:
 
 
 def contrasts(reference: Mapping[str, Any], data: pd.DataFrame, asked: Mapping[str, Any]) -> Found:
+    """Every number of emmeans' pairwise contrasts of one design, beside ours."""
     for model in MODELS:
         for block in reference.get("posthoc", {}).get(model, []):
             ours = pairwise(data, **asked, factors=block["factors"], model=model)
@@ -87,6 +89,7 @@ def _named(effect: str) -> frozenset[str]:
 
 
 def ranks(folder: Path) -> Found:
+    """The F of ARTool's aligned rank transforms, beside ours."""
     for name in ("11_art_5x3_percent", "12_art_mixed_likert"):
         reference, data, asked = read(folder, name)
         ours = {_named(row["effect"]): row for row in art_anova(data, **asked, strata="full").to_dict("records")}
@@ -96,6 +99,7 @@ def ranks(folder: Path) -> Found:
 
 
 def tests_of_means(folder: Path) -> Found:
+    """R's t tests and equivalence tests of one data set, beside ours."""
     reference, wide, _ = read(folder, "13_accuracy_chance")
     data = wide.melt(["id", "sex"], ["cond1", "cond2", "cond3", "cond4"], "condition", "accuracy")
     one = t_tests(data, "accuracy", "id", each="condition", against=50).to_dict("records")
@@ -115,6 +119,7 @@ def tests_of_means(folder: Path) -> Found:
 
 
 def models(folder: Path) -> Found:
+    """R's regression of actors and its crossed mixed model, beside ours."""
     reference, data, _ = read(folder, "14_regression_16")
     ours = regression(data, reference["y"], reference["x"])
     for name, theirs in {"r2_adjusted": "r2_adj", "rmse": "rmse_jamovi", "F": "F", "loo_rmse": "loo_rmse"}.items():

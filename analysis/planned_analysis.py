@@ -41,6 +41,7 @@ class AnalysisOutcome:
 
     @property
     def report(self) -> Path:
+        """Where the page for a browser was written."""
         return next(path for path in self.paths if path.name == "report.html")
 
 

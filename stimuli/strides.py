@@ -35,10 +35,12 @@ class Stride:
 
     @property
     def time(self) -> float:
+        """s from a foot's strike to its next."""
         return self.end - self.start
 
     @property
     def speed(self) -> float:
+        """m/s along the path."""
         return self.travel / self.time
 
 

@@ -65,6 +65,7 @@ class DrawnFigure:
 
 @contextmanager
 def settings() -> Iterator[None]:
+    """Within it all figures are drawn with the same fonts and lines, whatever the computer's own settings."""
     import warnings
 
     import matplotlib as mpl
@@ -88,6 +89,7 @@ def averaged(means: CellMeans, factors: tuple[str, ...]) -> np.ndarray:
 
 
 def canvas(width: float = 6.4, height: float = 4.2) -> tuple[Any, Any]:
+    """A figure with one pair of axes; width, height: inches."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -158,6 +160,7 @@ def _legend_width(names: Sequence[str], columns: int) -> float:
 
 
 def finish(axes: Any, plan: AnalysisPlan, x: str, levels: tuple[str, ...]) -> None:
+    """The axes of a figure over one factor: its levels from left to right, and what was measured upwards."""
     level_ticks(axes, levels, axes.get_figure().get_figwidth() - 1.1)
     axes.set_xlim(-0.5, len(levels) - 0.5)
     axes.set_xlabel(x)
@@ -169,6 +172,7 @@ def finish(axes: Any, plan: AnalysisPlan, x: str, levels: tuple[str, ...]) -> No
 
 
 def saved(drawing: Any, name: str, title: str, caption: str) -> DrawnFigure:
+    """The figure as PNG (200 dots an inch) and SVG, the same bytes every time."""
     png, svg = BytesIO(), BytesIO()
     drawing.savefig(png, format="png", dpi=200, metadata={"Software": "gaitlab"}, facecolor="white")
     drawing.savefig(svg, format="svg", metadata={"Date": None, "Creator": "gaitlab", "Title": title})

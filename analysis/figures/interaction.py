@@ -22,6 +22,7 @@ from analysis.statistics.intervals import ordinary, within_participant
 
 
 def interaction(x: str, lines: str, means: CellMeans, plan: AnalysisPlan) -> DrawnFigure:
+    """Means of a measure by the levels of one factor, joined by a line for each level of another."""
     if x == lines:
         raise AnalysisError(f"an interaction is of two factors, not of {x} with itself.")
     drawing, axes = canvas(6.8)

@@ -93,6 +93,7 @@ def _table(counts: pd.DataFrame) -> pd.DataFrame:
 
 
 def as_dict(study: Mapping[str, Any] | str | Path) -> Mapping[str, Any]:
+    """A study as its file's keys, from a dict, YAML text or a path; raises AnalysisError for what is no study."""
     if isinstance(study, Mapping):
         return study
     from ruamel.yaml import YAML

@@ -37,6 +37,7 @@ class RecordedRun:
 
     @property
     def finished(self) -> bool:
+        """Whether the participant reached the end."""
         return self.ended == "finished"
 
 

@@ -38,6 +38,7 @@ LONG = 24  # rows of a table that is folded away
 
 
 def comparisons_section(test: FurtherTest, results: PlannedResults, plots: Plots) -> Markup:
+    """Planned t tests: differences with 95 % limits, t, df, p and standardised difference."""
     data, (unit, decimals) = test.table, unit_cell(results)
     shown = data.assign(
         place=[f"{r['each']} {r['level']}" if r["each"] else "" for r in data.to_dict("records")],
@@ -63,6 +64,7 @@ def comparisons_section(test: FurtherTest, results: PlannedResults, plots: Plots
 
 
 def pairs_section(test: FurtherTest, results: PlannedResults, plots: Plots) -> Markup:
+    """Planned pairs of marginal means, a table for each family."""
     data, (unit, decimals) = test.table, unit_cell(results)
     parts: list[object] = []
     for (factors, by, adjust), part in data.groupby(["factors", "by", "adjust"], sort=False):
@@ -87,6 +89,7 @@ def pairs_section(test: FurtherTest, results: PlannedResults, plots: Plots) -> M
 
 
 def proportions_section(test: FurtherTest, results: PlannedResults, plots: Plots) -> Markup:
+    """Counts and proportions (%) against chance, with exact and Wilson's tests and the t test over participants."""
     parts: list[object] = []
     for label, part in test.table.groupby("label", sort=False):
         shown = part.assign(
@@ -113,6 +116,7 @@ def proportions_section(test: FurtherTest, results: PlannedResults, plots: Plots
 
 
 def d_prime_section(test: FurtherTest, results: PlannedResults, plots: Plots) -> Markup:
+    """Sensitivity d′ and criterion (both in standard deviations) by level."""
     data = test.table
     limits = [interval(a, b, 2) for a, b in zip(data["ci_low"], data["ci_high"], strict=True)]
     columns: Columns = {
@@ -133,6 +137,7 @@ def d_prime_section(test: FurtherTest, results: PlannedResults, plots: Plots) ->
 
 
 def psychometric_section(test: FurtherTest, results: PlannedResults, plots: Plots) -> Markup:
+    """Thresholds and just noticeable differences in the unit of the level, and effects on the threshold."""
     asked = results.plan.psychometric
     assert asked is not None
     data = test.table[test.table["part"] == "threshold"]
@@ -168,6 +173,7 @@ def psychometric_section(test: FurtherTest, results: PlannedResults, plots: Plot
 
 
 def adaptive_section(test: FurtherTest, results: PlannedResults, plots: Plots) -> Markup:
+    """Thresholds of adaptive tracks in the unit of the level."""
     data = test.table
     limits = [apa.limits(a, b) for a, b in zip(data["ci_low"], data["ci_high"], strict=True)]
     columns: Columns = {

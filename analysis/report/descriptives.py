@@ -11,6 +11,7 @@ from analysis.report.values import degrees_cell, interval, p_cell, str_right, un
 
 
 def normality_section(results: PlannedResults) -> Markup:
+    """Shapiro–Wilk tests of the residuals and of every cell; nothing where none was planned."""
     data = results.normality
     if not len(data):
         return Markup("")
@@ -67,6 +68,7 @@ def assumptions_section(results: PlannedResults) -> Markup:
 
 
 def descriptives_section(results: PlannedResults) -> Markup:
+    """Mean, standard deviation and limits of every cell, in the unit of the measure."""
     data = results.descriptives
     if not len(data):
         return Markup("")

@@ -29,6 +29,7 @@ def simulated_sentence(results: PlannedResults) -> str:
 
 
 def participants_paragraph(results: PlannedResults) -> str:
+    """Who took part: how many, of how many planned, of which groups and what age."""
     plan, runs = results.plan, results.recorded.runs
     n = len(runs)
     words = f"{n} participant{'s' if n != 1 else ''} finished the study"
@@ -191,6 +192,7 @@ def _anova_methods(results: PlannedResults) -> list[str]:
 
 
 def sphericity_sentence(results: PlannedResults) -> str:
+    """What Mauchly's test says of the effects it applies to; nothing where it applies to none."""
     tested = results.anova[results.anova["mauchly_p"].notna()] if len(results.anova) else results.anova
     if not len(tested):
         return ""
@@ -209,6 +211,7 @@ def sphericity_sentence(results: PlannedResults) -> str:
 
 
 def normality_sentence(results: PlannedResults) -> str:
+    """What Shapiro–Wilk says of the residuals and of the cells; nothing where it was not run."""
     table = results.normality
     if not len(table) or not math.isfinite(table["p"].iloc[0]):
         return ""

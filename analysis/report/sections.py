@@ -33,6 +33,7 @@ LONGEST_TABLE = 70  # pairs shown in the page; longer families are in posthoc.cs
 
 
 def anova_section(results: PlannedResults, plot: DrawnFigure | None = None) -> Markup:
+    """The analysis of variance as a table, its assumptions and what was left out."""
     data = results.anova
     if not len(data):
         return Markup("")
@@ -85,6 +86,7 @@ def anova_section(results: PlannedResults, plot: DrawnFigure | None = None) -> M
 
 
 def t_tests_section(results: PlannedResults, plots: Mapping[str, DrawnFigure]) -> Markup:
+    """One-sample t tests of levels against reference values, with Bayes factors."""
     data = results.ttests
     if not len(data):
         return Markup("")
@@ -124,6 +126,7 @@ def t_tests_section(results: PlannedResults, plots: Mapping[str, DrawnFigure]) -
 
 
 def posthoc_section(results: PlannedResults) -> Markup:
+    """Pairwise comparisons of the effects that were significant."""
     plan = results.plan
     if results.means is None or plan.adjust is None:
         return Markup("")

@@ -19,24 +19,29 @@ HOLM_LIMITS = "With Holm the limits are Bonferroni's, wider than its p."
 
 
 def str_right(value: object) -> str:
+    """Text that stands at the right of its column."""
     return str(value)
 
 
 def p_cell(value: float) -> str:
+    """A p value as < .001 or .045; a dash for none."""
     if not math.isfinite(value):
         return "–"
     return "< .001" if value < 0.001 else apa.share(value, 3)
 
 
 def share_cell(value: float) -> str:
+    """A number between 0 and 1 without its leading zero, to two decimals; a dash for none."""
     return apa.share(value) if math.isfinite(value) else "–"
 
 
 def share_interval(low: float, high: float) -> str:
+    """Limits between 0 and 1, as [.38, .78]; a dash for none."""
     return f"[{share_cell(low)}, {share_cell(high)}]" if math.isfinite(high) else "–"
 
 
 def epsilon_cell(value: float) -> str:
+    """A correction of degrees of freedom, 1 where there is none to make; a dash where it does not apply."""
     return "–" if not math.isfinite(value) else apa.share(value) if value < 0.995 else "1"
 
 
@@ -47,10 +52,12 @@ def unit_cell(results: PlannedResults) -> tuple[Cell, int]:
 
 
 def degrees_cell(value: float) -> str:
+    """Degrees of freedom; a dash for none."""
     return apa.degrees(value) if math.isfinite(value) else "–"
 
 
 def bayes_cell(value: float) -> str:
+    """A Bayes factor in three figures, above 10 000 as such; a dash for none."""
     return "–" if not math.isfinite(value) else "> 10 000" if value > 1e4 else apa.figures(value)
 
 

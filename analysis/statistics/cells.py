@@ -39,6 +39,7 @@ class CellMeans:
         return (*self.within, *self.between)
 
     def levels(self, factor: str) -> tuple[str, ...]:
+        """Levels of a within or between factor, in the order of the design."""
         return self.within[factor] if factor in self.within else self.between[factor]
 
 

@@ -37,6 +37,7 @@ class MarginalMeans:
 
     @cached_property
     def estimates(self) -> np.ndarray:
+        """(m,) marginal means, in the unit of the measure."""
         return np.einsum("ip,pc,ic->i", self.between_weights, self.model.coefficients, self.within_weights)
 
     @cached_property
@@ -47,6 +48,7 @@ class MarginalMeans:
 
     @cached_property
     def between_covariance(self) -> np.ndarray:
+        """(m, m) covariance of the groups' weights, for an error variance of 1."""
         return self.between_weights @ self.model.unscaled @ self.between_weights.T
 
     def strata(self, kind: str) -> list[tuple[np.ndarray, float]]:
@@ -136,6 +138,7 @@ def variance_and_df(
 
 
 def check_model(model: str) -> None:
+    """Raises AnalysisError for the name of a model of error that there is not."""
     if model not in MODELS:
         raise AnalysisError(f"model must be one of {', '.join(MODELS)}, not {model!r}.")
 

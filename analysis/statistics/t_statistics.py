@@ -15,6 +15,7 @@ from analysis.statistics.effect_size import hedges_factor, t_noncentrality_limit
 
 
 def one_sample(values: np.ndarray, against: float) -> dict[str, Any]:
+    """One-sample t test of values (n,) against a value in their unit; raises AnalysisError for fewer than two."""
     if len(values) < 2:
         raise AnalysisError(f"A t test needs at least 2 participants; there is {len(values)}.")
     flat = _flat(values)
@@ -23,6 +24,7 @@ def one_sample(values: np.ndarray, against: float) -> dict[str, Any]:
 
 
 def paired_test(x: np.ndarray, y: np.ndarray) -> dict[str, Any]:
+    """Paired t test of x and y (n,), which are the same participants in the same order."""
     difference = x - y
     flat = float(np.sum((difference - difference.mean()) ** 2)) <= 1e-26 * float(np.sum(x**2) + np.sum(y**2))
     sd = 0.0 if flat else difference.std(ddof=1)
@@ -31,6 +33,7 @@ def paired_test(x: np.ndarray, y: np.ndarray) -> dict[str, Any]:
 
 
 def from_moments(test: str, mean: float, sd: float, n: int, against: float) -> dict[str, Any]:
+    """t test from mean, SD (divisor n - 1) and n: t, p, limits, d and Bayes factor; no t without variance."""
     estimate, df, root = mean - against, n - 1, math.sqrt(n)
     row: dict[str, Any] = {
         "test": test,
@@ -112,6 +115,7 @@ def _flat(values: Sequence[float] | np.ndarray) -> bool:
 
 
 def shapiro(values: np.ndarray) -> dict[str, float]:
+    """W and p of Shapiro and Wilk's test (Biometrika 52, 1965); empty for fewer than three or equal values."""
     if len(values) < 3 or _flat(values):
         return {}
     w, p = stats.shapiro(values)

@@ -46,6 +46,7 @@ class FittedFigure(Figure):
 
     @cached_property
     def sole(self) -> Sole:
+        """The sole (m) fitted to the body's own shoes."""
         return self.fitted
 
 

@@ -29,6 +29,8 @@ class Channel:
 
 @dataclass(frozen=True, eq=False)
 class Animation:
+    """One animation of a glTF file: what moves which node, over time in s."""
+
     name: str
     channels: tuple[Channel, ...]
 

@@ -63,9 +63,11 @@ class HeadFrame:
     crown: float
 
     def to_figure(self, points: Floats) -> Floats:
+        """Points (..., 3) of the head's coordinates (cm) in the figure's (cm)."""
         return (np.asarray(points, dtype=np.float64) - (0, CROWN, 0)) * self.scale + (0, self.crown, 0)
 
     def to_head(self, points: Floats) -> Floats:
+        """Points (..., 3) of the figure's coordinates (cm) in the head's (cm)."""
         return (points - (0, self.crown, 0)) / self.scale + (0, CROWN, 0)
 
 

@@ -63,7 +63,7 @@ def read_description(folder: Path) -> Description:
         raise ImportingError(f"{path}: {', '.join(unknown)} is no setting; the settings are {', '.join(KEYS)}")
     missing = [key for key in ("sex", *RANGES) if key not in content]
     if missing:
-        raise ImportingError(f"{path}: {', '.join(missing)} is missing")
+        raise ImportingError(f"{path}: {', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing")
     sex = str(content["sex"]).lower()
     if sex not in SEXES:
         raise ImportingError(f"{path}: sex: {content['sex']!r} is neither female nor male, which decides the body")

@@ -74,6 +74,7 @@ class CapturedWalk:
 
     @property
     def marker_based(self) -> bool:
+        """Whether its skeleton was made from markers."""
         return self.names == "markers"
 
 

@@ -35,10 +35,12 @@ class QualityRow:
 
     @property
     def speed_error(self) -> float:
+        """Delivered over wanted speed, in % above it."""
         return 100.0 * (self.delivered.speed / self.wanted.speed - 1.0)
 
     @property
     def frequency_error(self) -> float:
+        """Delivered over wanted step frequency, in % above it."""
         return 100.0 * (self.delivered.step_frequency / self.wanted.step_frequency - 1.0)
 
     @property

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import html
 import re
-import shutil
-import subprocess
 import warnings
 from itertools import pairwise
 from pathlib import Path
@@ -29,6 +27,7 @@ from analysis.statistics.cells import cell_means
 from experiment_app.simulated.simulate import simulate
 from protocols.mistakes.consistency import inconsistencies
 from protocols.study_file import parse_study
+from tests.analysis.typesetting import needs_latex, too_wide
 
 STUDY = """
 study: floor
@@ -173,7 +172,7 @@ def test_a_test_that_leaves_somebody_out_says_so_beside_its_result() -> None:
     assert all(any("P0 (no data in F1)" in note for note in test.notes) for test in tests)
 
 
-@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="it needs LaTeX (pdflatex)")
+@needs_latex
 def test_a_table_longer_or_wider_than_a_page_goes_on_over_the_next_and_breaks_its_words(tmp_path: Path) -> None:
     """An ANOVA of seven factors has 127 effects; a pair of cells of four factors has long names."""
     effects = [[f"effect {i}", "1, 20", "1.00", "< .001"] for i in range(127)]
@@ -181,14 +180,9 @@ def test_a_table_longer_or_wider_than_a_page_goes_on_over_the_next_and_breaks_it
     pairs = [[cell, cell, cell, "−0.00012", "−12.34", "20.1", "< .001"]] * 30
     written = _table("Analysis of variance", ["Effect", "df", "$F$", "$p$"], effects)
     written += _table("Pairs", ["Effect", "a", "b", "a $-$ b", "$t$", "df", "$p$"], pairs, texts=3)
-    packages = r"\usepackage{booktabs,array,longtable}"
-    page = r"\documentclass{article}" + packages + r"\begin{document}" + written + r"\end{document}"
-    (tmp_path / "page.tex").write_text(page, encoding="utf-8")
-    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "page.tex"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, errors="replace", check=False)
-    assert done.returncode == 0, done.stdout
-    assert "too large" not in done.stdout
-    assert [width for width in re.findall(r"Overfull \\hbox \(([\d.]+)pt", done.stdout) if float(width) > 5] == []
+    said, points = too_wide(tmp_path, r"\usepackage{booktabs,array,longtable}", written)
+    assert "too large" not in said
+    assert all(width <= 5 for width in points)
 
 
 @pytest.mark.filterwarnings("error")
