@@ -140,6 +140,10 @@ _OUTLINE = (
 )
 
 
+_HEEL = 6.3  # cm, from the ankle back to where a landing foot turns (Sole.of in stimuli/legs/contact.py)
+_BEVEL = np.radians(30.0)
+
+
 def _scaled_rows(figure: Figure, rows: tuple[tuple[float, ...], ...]) -> list[tuple[float, ...]]:
     k = figure.foot_scale
     wide = 0.93 if figure.female else 1.0
@@ -168,12 +172,16 @@ def shoe(figure: Figure) -> Field:
 
 
 def sole(figure: Figure) -> Field:
-    """The sole, a little wider than the upper and flat on the floor, the toe lifted slightly."""
+    """The sole, a little wider than the upper and flat on the floor, toe and end of the heel lifted slightly."""
     origin, forward, outwards = _shoe_frame(figure)
+    k = figure.foot_scale
     slab = generalised_cylinder(origin, forward, outwards, _scaled_rows(figure, _OUTLINE), rounding=0.8)
-    waist = ellipsoid(origin + figure.foot_scale * (4.0 * forward), (8.0, 0.5, 3.2))
+    waist = ellipsoid(origin + k * (4.0 * forward), (8.0, 0.5, 3.2))
     floor = half_space((0, -1, 0), (0, 0.0, 0))
-    return cut(lambda p: smooth_max(slab(p), floor(p), 0.25), waist, 0.3)
+    # a foot lands on its heel and turns about there, toes up by 30 degrees and less: what is behind would sink
+    heel = half_space(-np.cos(_BEVEL) * np.array([0, 1.0, 0]) - np.sin(_BEVEL) * forward, origin - _HEEL * k * forward)
+    flat = lambda p: smooth_max(floor(p), heel(p), 0.25)  # noqa: E731
+    return cut(lambda p: smooth_max(slab(p), flat(p), 0.25), waist, 0.3)
 
 
 def laces(figure: Figure) -> Field:

@@ -81,7 +81,7 @@ def matched(kind, noise=0.0):
 def test_heel_strikes_are_within_20_ms_of_the_files_events():
     """149 strikes in 32 trials of five laboratories, also in a file's first and last 50 ms; one is 21.1 ms late.
 
-    That is the last of 2014014_C5_04, 50 ms before its file's end and on no plate.
+    That is the last of 2014014_C5_04, on no plate; the next test says why its event cannot be right.
     """
     differences, missed = matched("strike")
     assert len(differences) == 149
@@ -90,6 +90,36 @@ def test_heel_strikes_are_within_20_ms_of_the_files_events():
     assert np.mean(np.abs(differences)) < 0.0075
     assert np.sum(np.abs(differences) > 0.020) <= 1
     assert np.max(np.abs(differences)) < 0.0215
+
+
+@needs_captures
+def test_the_one_event_missed_by_more_than_20_ms_comes_before_any_force_plate_would_see_the_foot_land():
+    """At 1.51 s the heel is as fast as the walker and the toes have not begun to sink; on plates they always have."""
+    doubted, plates = [], []
+    for recording, paths in labelled():
+        if not recording.name.startswith("20"):
+            continue
+        for number, event in enumerate(e for e in recording.events if e.kind == "strike"):
+            landing = how_far_landed(paths, event)
+            if (recording.name, number) == ("2014014_C5_04", 3):
+                doubted.append(landing)
+            elif number < 2:  # on a plate
+                plates.append(landing)
+    assert len(plates) == 56
+    [(fast, sunk)] = doubted
+    assert fast == pytest.approx(1.0, abs=0.02)
+    assert fast > 1.15 * max(speed for speed, _ in plates)
+    assert sunk < 0.65 * min(angle for _, angle in plates)
+
+
+def how_far_landed(paths, event):
+    """Speed of the heel over that of the pelvis, and degrees the toes have sunk since they were highest."""
+    frame, foot = round(event.time * paths.rate), ("left", "right").index(event.side)
+    sole = paths.toes[foot] - paths.heels[foot]
+    pitch = np.degrees(np.arctan2(sole[:, 1], np.hypot(sole[:, 0], sole[:, 2])))
+    heel = np.linalg.norm(np.gradient(paths.heels[foot], axis=0)[frame])
+    pelvis = np.linalg.norm(np.gradient(paths.pelvis, axis=0)[len(paths.pelvis) // 2])
+    return heel / pelvis, np.max(pitch[max(frame - 15, 0) : frame + 8]) - pitch[frame]
 
 
 @needs_captures
