@@ -36,15 +36,15 @@ def drawn_crowd(crowd: Crowd) -> DrawnCrowd:
     """Everybody of the crowd, posed and in place at its time."""
     cast = crowd_cast(replace(crowd, seconds=0.0))
     places = cast.plan.places(crowd.seconds)
-    rows = np.empty((crowd.size, 64, 4), np.float32)
+    rows = np.zeros((crowd.size, 64, 4), np.float32)
     matrices = rows[:, :63].reshape(crowd.size, 21, 3, 4)
     poser()(cast.mix, cast.plan.phases(crowd.seconds), matrices)
-    rows[:, :63] *= cast.plan.sizes.astype(np.float32)[:, None, None]
+    rows *= cast.plan.sizes.astype(np.float32)[:, None, None]
     rows[:, 63, 0] = places[:, 0]
     rows[:, 63, 1] = 0.0
     rows[:, 63, 2] = places[:, 1] + (END - cast.plan.length)
     rows[:, 63, 3] = np.arange(crowd.size)
-    matrices[..., 3] += rows[:, 63, :3][:, None]
+    rows[:, :63, 3] += np.tile(rows[:, 63, :3], 21)
     ends = np.minimum(places[:, 1] / FADING[0], (cast.plan.length - places[:, 1]) / FADING[1])
     return DrawnCrowd(cast.look, rows, np.minimum(ends, 1.0))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -113,6 +113,12 @@ def place_camera(
     turn = look(eye, forward)
     matrix = perspective(half_height, aspect) @ turn
     return Viewpoint(eye, azimuth, half_height, matrix, _from_clip(half_height, aspect, turn, eye))
+
+
+@lru_cache(maxsize=8)
+def place_still(camera: Camera, aspect: float) -> Viewpoint:
+    """A camera that follows nobody, placed once for all frames; what follows from it alone can be kept with it."""
+    return place_camera(camera, aspect, 0.0, (0.0, 0.0, 0.0))
 
 
 def _framed(camera: Camera, stature: float, half_angle: float) -> tuple[float, float]:

@@ -7,6 +7,7 @@ the edges of shadows do not swim while a crowd walks.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,10 +32,12 @@ def may_shade(viewpoint: Viewpoint, places: Floats, statures: Floats) -> NDArray
     return _within_picture(viewpoint, places, statures) & (distances(viewpoint, places) < SHADED)
 
 
+@lru_cache(maxsize=8)
 def crowd_sunlight(ground: Ground, viewpoint: Viewpoint) -> Sunlight:
     """The sun, with a box in its light that holds everybody between the kerbs who can cast a shadow that is seen.
 
     The box lies along the street, which takes a fifth of the texels of an upright one; its corners are on whole blocks.
+    A camera that stands still has one viewpoint for all its frames, so its light is found once.
     """
     to_sun = direction_to_sun(viewpoint.azimuth)
     turn = along_street(to_sun)

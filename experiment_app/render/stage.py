@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import moderngl
 
-from experiment_app.render.cameras import NOTHING, Viewpoint, place_camera
+from experiment_app.render.cameras import NOTHING, Viewpoint, place_camera, place_still
 from experiment_app.render.contact_pass import EVERYWHERE, ContactPass
 from experiment_app.render.crowd_stage import CrowdStage
 from experiment_app.render.drawn import Drawn, DrawnCrowd, DrawnWalker
@@ -177,6 +177,8 @@ def parted(drawn: Sequence[Drawn]) -> tuple[tuple[DrawnWalker, ...], DrawnCrowd 
 
 def seen_from(scene: Scene, drawn: Sequence[DrawnWalker], aspect: float) -> Viewpoint:
     """The scene's camera in the world; a view that follows looks at the first walker."""
+    if not scene.camera.follows:
+        return place_still(scene.camera, aspect)
     machine = corners(_middle(scene)) if scene.ground == "treadmill" else NOTHING
     if not drawn:
         return place_camera(scene.camera, aspect, 1.75, (0.0, 0.0, 0.0), machine)
