@@ -48,6 +48,7 @@ missing=$(echo "$missing" | sed 's/libx11-xcb/libx11-xcb1/;s/libxcursor/libxcurs
 if [ "${1:-}" = test ]; then
   command -v Xvfb >/dev/null 2>&1 || missing="$missing xvfb"
   command -v xdotool >/dev/null 2>&1 || missing="$missing xdotool"
+  command -v glslangValidator >/dev/null 2>&1 || missing="$missing glslang-tools"
 fi
 # shellcheck disable=SC2086 - a list of packages
 if [ -n "$missing" ]; then install_packages $missing; fi
