@@ -6,7 +6,7 @@ linear blending after turning quaternions to one hemisphere), everything else li
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,7 +70,7 @@ class CycleTable:
         body = np.concatenate(
             [np.array([cycle.hips for cycle in cycles]), rotations.reshape(*rotations.shape[:2], -1)], axis=2
         )
-        feet = np.array([cycle.feet for cycle in cycles]).transpose(1, 0, 2, 3)
+        feet = np.ascontiguousarray(np.array([cycle.feet for cycle in cycles]).transpose(1, 0, 2, 3))
         return cls(
             np.concatenate([body, body[:, :1]], axis=1),
             np.concatenate([feet, feet[:, :, :1]], axis=2),
@@ -99,24 +99,34 @@ def blend_rotations(rotations: Floats, weights: Floats) -> Floats:
     return np.asarray(mean / np.linalg.norm(mean, axis=-1, keepdims=True))
 
 
-def blend_body(table: CycleTable, cycles: Indices, weights: Floats, phase: float) -> tuple[Floats, Floats]:
+def blend_body(table: CycleTable, weighted: Mapping[int, float], phase: float) -> tuple[Floats, Floats]:
     """Hips (3,) m and local rotations (13, 4) of the UPPER joints at a phase of the cycle.
 
-    cycles, weights: (M,) indices into the table and their weights, summing to 1.
+    weighted: index into the table -> weight, summing to 1.
     """
-    row = _sampled(table.body, cycles, weights, phase)
+    row = _sampled(table.body, weighted, phase)
     rotations = row[3:].reshape(-1, 4)
     return row[:3], rotations / np.sqrt(np.einsum("jk,jk->j", rotations, rotations))[:, None]
 
 
-def blend_foot(table: CycleTable, side: int, cycles: Indices, weights: Floats, clock: float) -> Floats:
+def blend_foot(table: CycleTable, side: int, weighted: Mapping[int, float], clock: float) -> Floats:
     """(6,) FOOT_CHANNELS of the left (0) or right (1) foot at its own clock."""
-    return _sampled(table.feet[side], cycles, weights, clock)
+    return _sampled(table.feet[side], weighted, clock)
 
 
-def _sampled(rows: Floats, cycles: Indices, weights: Floats, place: float) -> Floats:
+def blend_contacts(table: CycleTable, weighted: Mapping[int, float]) -> Floats:
+    """(5,) CycleTable.contacts: of both feet their stance and how far ahead they strike, phase of the left strike."""
+    weights = np.array(list(weighted.values()))
+    return np.asarray(weights @ table.contacts[list(weighted)])
+
+
+def _sampled(rows: Floats, weighted: Mapping[int, float], place: float) -> Floats:
     """Weighted mean over cycles of rows (K, N + 1, C), linear between samples."""
-    position = place * (rows.shape[1] - 1)
-    sample = min(int(position), rows.shape[1] - 2)
+    cycles, samples, columns = rows.shape
+    position = place * (samples - 1)
+    sample = min(int(position), samples - 2)
     share = position - sample
-    return np.asarray((weights * (1.0 - share)) @ rows[cycles, sample] + (weights * share) @ rows[cycles, sample + 1])
+    before = [cycle * samples + sample for cycle in weighted]
+    chosen = rows.reshape(cycles * samples, columns).take(before + [row + 1 for row in before], axis=0)
+    weights = [weight * (1.0 - share) for weight in weighted.values()]
+    return np.asarray(np.array(weights + [weight * share for weight in weighted.values()]) @ chosen)

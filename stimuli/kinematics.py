@@ -6,11 +6,14 @@ Joints are turned one depth level at a time (rendering notes, section 3), so a p
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stimuli.skeleton import JOINTS, PARENTS, Floats, Pose, Skeleton
 
+Indices = NDArray[np.intp]
 
-def _levels() -> tuple[tuple[Floats, Floats], ...]:
+
+def _levels() -> tuple[tuple[Indices, Indices], ...]:
     depth = [0] * len(JOINTS)
     for joint, parent in enumerate(PARENTS):
         depth[joint] = 0 if parent < 0 else depth[parent] + 1
@@ -26,7 +29,7 @@ LEVELS = _levels()
 
 def rotation_matrices(rotations: Floats) -> Floats:
     """(..., 4) unit quaternions x y z w -> (..., 3, 3)."""
-    x, y, z, w = np.moveaxis(rotations, -1, 0)
+    x, y, z, w = (rotations[..., component] for component in range(4))
     matrices = np.empty((*rotations.shape[:-1], 3, 3))
     x2, y2, z2 = x + x, y + y, z + z
     xx, yy, zz, xy, xz, yz = x * x2, y * y2, z * z2, x * y2, x * z2, y * z2
@@ -52,7 +55,7 @@ def world_matrices(skeleton: Skeleton, pose: Pose) -> Floats:
     matrices[..., 0, :3, 3] = pose.hips
     matrices[..., 3, 3] = 1.0
     for joints, parents in LEVELS:
-        matrices[..., joints, :, :] = matrices[..., parents, :, :] @ matrices[..., joints, :, :]
+        matrices[..., joints, :, :] = matrices.take(parents, axis=-3) @ matrices.take(joints, axis=-3)
     return matrices
 
 

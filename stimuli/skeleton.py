@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,13 +60,14 @@ class Skeleton:
 
     offsets: Floats
 
-    @property
+    @cached_property
     def positions(self) -> Floats:
-        """(21, 3) m: rest positions of all joints."""
+        """(21, 3) m: rest positions of all joints; not to be written to."""
         positions = np.array(self.offsets, dtype=np.float64)
         for joint, parent in enumerate(PARENTS):
             if parent >= 0:
                 positions[joint] += positions[parent]
+        positions.flags.writeable = False
         return positions
 
 

@@ -12,6 +12,7 @@ are blended stance with stance and swing with swing.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,10 +23,10 @@ from stimuli.skeleton import JOINTS, Floats, Skeleton
 STANCE_END = 0.62
 """Toe-off on the foot's own clock; about the share of stance at comfortable speed (Murray 1964)."""
 
-FLAT_ZONE = np.radians(4.0)
+FLAT_ZONE = math.radians(4.0)
 """Pitches well inside this are drawn as a flat foot, so that the change of pivot between heel and ball is smooth."""
 
-TOE_BEND_LIMIT = np.radians(38.0)
+TOE_BEND_LIMIT = math.radians(38.0)
 """Extension of the toes at push-off before they leave the ground, rad. Bare feet bend them by 40 to 50 degrees
 (Bojsen-Moller & Lamoreux 1979), shod ones less; with 38 the drawn ankles of the default actors are nearest to the
 captured ones."""
@@ -33,7 +34,7 @@ captured ones."""
 ARRIVAL = 0.99
 """Share of swing after which the foot comes straight down on its footprint."""
 
-TOE_BEND_SOFTNESS = np.radians(4.0)
+TOE_BEND_SOFTNESS = math.radians(4.0)
 
 
 @dataclass(frozen=True)

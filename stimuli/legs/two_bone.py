@@ -7,10 +7,12 @@ and both bones keep their length exactly.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import acos, cos, sin, sqrt
 
 import numpy as np
 
+from stimuli.one_rotation import Turn, Vector, from_columns, inverse, multiply
 from stimuli.skeleton import JOINTS, Floats, Skeleton
 
 STRAIGHTEST = 0.99995
@@ -20,8 +22,6 @@ FURTHEST = 0.92
 """Largest distance along the ground from hip to ankle over the leg's length: the leg is 67 degrees off upright. People
 stay below 0.71 in their longest steps; beyond, a figure whose legs are too short for the step does the splits, and its
 foot gives way along the ground instead (walker.py)."""
-
-Vector = tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,10 +39,26 @@ class Leg:
     thigh_rest: Floats
     shank_rest: Floats
 
-    @property
+    @cached_property
     def length(self) -> float:
         """m, hip to knee to ankle."""
         return self.thigh + self.shank
+
+    @cached_property
+    def socket(self) -> Vector:
+        """m, hip joint from the hips joint, in plain numbers."""
+        x, y, z = self.hip.tolist()
+        return x, y, z
+
+    @cached_property
+    def thigh_to_axes(self) -> Turn:
+        """The rotation that turns the thigh at rest along +X, its hinge along +Y."""
+        return _to_axes(self.thigh_rest)
+
+    @cached_property
+    def shank_to_axes(self) -> Turn:
+        """The same of the shank."""
+        return _to_axes(self.shank_rest)
 
     @classmethod
     def of(cls, skeleton: Skeleton, side: str) -> Leg:
@@ -54,8 +70,8 @@ class Leg:
         return cls(float(np.linalg.norm(thigh)), float(np.linalg.norm(shank)), hip, _frame(thigh), _frame(shank))
 
 
-def solve(leg: Leg, hip: Vector, ankle: Vector, knee_yaw: float) -> tuple[Floats, Floats]:
-    """World rotations (3, 3) of thigh and shank that put the ankle where it is asked.
+def solve(leg: Leg, hip: Vector, ankle: Vector, knee_yaw: float) -> tuple[Turn, Turn]:
+    """World rotations of thigh and shank that put the ankle where it is asked.
 
     hip, ankle: m; knee_yaw: rad, horizontal direction the knee points (0 forward, positive to the left).
     If the ankle is out of reach the leg is left at STRAIGHTEST, pointing at it.
@@ -76,7 +92,7 @@ def solve(leg: Leg, hip: Vector, ankle: Vector, knee_yaw: float) -> tuple[Floats
     thigh = (c * dx + s * fx, c * dy + s * fy, c * dz + s * fz)
     c, s = cos(knee), -sin(knee)
     shank = (c * dx + s * fx, c * dy + s * fy, c * dz + s * fz)
-    return _world_frame(thigh, normal) @ leg.thigh_rest, _world_frame(shank, normal) @ leg.shank_rest
+    return multiply(_along(thigh, normal), leg.thigh_to_axes), multiply(_along(shank, normal), leg.shank_to_axes)
 
 
 def reach(leg: Leg, knee: Floats) -> Floats:
@@ -97,8 +113,14 @@ def _frame(bone: Floats) -> Floats:
     return np.array([along, hinge, np.cross(hinge, along)])
 
 
-def _world_frame(along: Vector, hinge: Vector) -> Floats:
-    """(3, 3) columns: bone, hinge, their product."""
-    ax, ay, az = along
+def _to_axes(rest: Floats) -> Turn:
+    """The rotation that turns a bone and its hinge (3, 3), the first rows of its frame at rest, into X and Y."""
+    (ax, ay, az), (hx, hy, hz) = rest[:2].tolist()
+    return inverse(_along((ax, ay, az), (hx, hy, hz)))
+
+
+def _along(bone: Vector, hinge: Vector) -> Turn:
+    """The rotation that turns X into a bone and Y into its hinge."""
+    ax, ay, az = bone
     hx, hy, hz = hinge
-    return np.array([[ax, hx, hy * az - hz * ay], [ay, hy, hz * ax - hx * az], [az, hz, hx * ay - hy * ax]])
+    return from_columns(bone, hinge, (ay * hz - az * hy, az * hx - ax * hz, ax * hy - ay * hx))

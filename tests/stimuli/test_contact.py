@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stimuli.legs import contact
+from stimuli.legs import contact, one_foot
 from stimuli.legs.contact import Sole
 
 SOLE = Sole(ankle_height=0.085, heel=0.055, ball=0.135, ball_height=0.024, tip=0.195)
@@ -68,3 +68,17 @@ def test_the_swing_begins_and_ends_at_the_speed_of_the_ground():
 def test_the_flat_zone_can_be_undone():
     pitch = np.radians(np.linspace(-70, 30, 101))
     np.testing.assert_allclose(contact.flattened(contact.wanted_pitch(pitch)), pitch, atol=1e-9)
+
+
+@given(st.floats(0.0, 0.9999), st.floats(0.56, 0.7), st.floats(-1.3, 0.6))
+def test_one_foot_in_plain_numbers_is_as_many_feet(phase, stance, pitch):
+    clock = one_foot.clock(phase, stance)
+    swing = one_foot.swing_progress(clock)
+    bend = one_foot.toe_bend(pitch, swing)
+    assert clock == pytest.approx(float(contact.clock(phase, stance)), abs=1e-14)
+    assert swing == pytest.approx(float(contact.swing_progress(clock)), abs=1e-14)
+    travel = float(contact.footprint_travel(phase, stance))
+    assert one_foot.footprint_travel(phase, stance) == pytest.approx(travel, abs=1e-14)
+    assert bend == pytest.approx(float(contact.toe_bend(pitch, swing)), abs=1e-14)
+    expected = [float(value) for value in contact.planted(SOLE, pitch, bend)]
+    assert one_foot.planted(SOLE, pitch, bend) == pytest.approx(expected, abs=1e-14)

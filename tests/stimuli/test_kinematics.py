@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from stimuli.bodies.known import load_body
 from stimuli.kinematics import skinning_matrices, world_joints, world_matrices
 from stimuli.legs.two_bone import Leg, solve
-from stimuli.rotations import about_axis
+from stimuli.rotations import about_axis, to_matrix
 from stimuli.skeleton import JOINTS, Pose
 
 SKELETON = load_body("man").skeleton
@@ -44,7 +44,7 @@ def test_the_leg_reaches_the_ankle_and_bends_forward(angle, aside, distance, kne
     leg = Leg.of(SKELETON, "right")
     distance = min(distance, 0.999 * leg.length)
     ankle = distance * np.array([np.sin(aside), -np.cos(aside) * np.cos(angle), np.cos(aside) * np.sin(angle)])
-    thigh, shank = solve(leg, (0.0, 0.0, 0.0), tuple(ankle), knee_yaw)
+    thigh, shank = (to_matrix(turn) for turn in solve(leg, (0.0, 0.0, 0.0), tuple(ankle), knee_yaw))
     offsets = SKELETON.offsets
     knee = thigh @ offsets[JOINTS.index("rightLowerLeg")]
     np.testing.assert_allclose(knee + shank @ offsets[JOINTS.index("rightFoot")], ankle, atol=1e-9)
@@ -58,5 +58,5 @@ def test_a_leg_of_3_and_4_with_the_ankle_at_5_bends_by_a_right_angle():
     offsets[JOINTS.index("rightLowerLeg")] = (0.0, -3.0, 0.0)
     offsets[JOINTS.index("rightFoot")] = (0.0, -4.0, 0.0)
     leg = Leg.of(type(SKELETON)(offsets), "right")
-    thigh, shank = solve(leg, (0.0, 0.0, 0.0), (0.0, -5.0, 0.0), 0.0)
+    thigh, shank = (to_matrix(turn) for turn in solve(leg, (0.0, 0.0, 0.0), (0.0, -5.0, 0.0), 0.0))
     assert (thigh @ [0, -1, 0]) @ (shank @ [0, -1, 0]) == pytest.approx(0.0, abs=1e-12)

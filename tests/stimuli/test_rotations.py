@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from stimuli import one_rotation
 from stimuli import rotations as r
 
 RNG = np.random.default_rng(20221)
@@ -89,3 +90,29 @@ def test_signs_are_chosen_so_that_neighbours_are_close():
 
 def test_heading_left_is_positive_yaw():
     assert r.yaw(r.about_axis([0.0, 1.0, 0.0], 0.3)) == pytest.approx(0.3)
+
+
+@given(quaternions, quaternions, st.tuples(*[st.floats(-2, 2)] * 3))
+def test_one_rotation_in_plain_numbers_is_as_many(first, second, vector):
+    a, b = tuple(first.tolist()), tuple(second.tolist())
+    np.testing.assert_allclose(one_rotation.multiply(a, b), r.multiply(a, b), atol=1e-15)
+    np.testing.assert_allclose(one_rotation.inverse(a), r.inverse(a), atol=1e-15)
+    np.testing.assert_allclose(one_rotation.rotate(a, vector), r.rotate(a, vector), atol=1e-14)
+    matrix = r.to_matrix(a)
+    again = one_rotation.w_not_negative(one_rotation.from_columns(*map(tuple, matrix.T.tolist())))
+    np.testing.assert_allclose(again, r.from_matrix(matrix), atol=1e-14)
+
+
+@pytest.mark.parametrize("half_turn", [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.6, 0.8, 0.0)])
+def test_one_rotation_comes_back_from_its_columns_even_for_half_turns(half_turn):
+    matrix = r.to_matrix((*half_turn, 0.0))
+    assert same_rotation(one_rotation.from_columns(*map(tuple, matrix.T.tolist())), (*half_turn, 0.0))
+
+
+@given(st.floats(-1.3, 1.3))
+def test_toes_go_up_and_a_heading_goes_left(angle):
+    ahead = (0.0, 0.0, 1.0)
+    up = one_rotation.rotate(one_rotation.toes_up(angle), ahead)
+    np.testing.assert_allclose(up, (0.0, np.sin(angle), np.cos(angle)), atol=1e-14)
+    left = one_rotation.rotate(one_rotation.heading(angle), ahead)
+    np.testing.assert_allclose(left, (np.sin(angle), 0.0, np.cos(angle)), atol=1e-14)
