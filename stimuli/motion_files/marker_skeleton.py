@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stimuli.clip import Clip
-from stimuli.motion_files import marker_fitting
 from stimuli.motion_files.errors import MotionFileError
 from stimuli.motion_files.joint_centres import joint_centres, pelvis_axes, unit
-from stimuli.motion_files.marker_fitting import Body, fitted, nearest_rotation
+from stimuli.motion_files.marked_body import Body
+from stimuli.motion_files.marker_fitting import fitted, places
 from stimuli.motion_files.markers import MarkerRecording, filled, seen_part
 from stimuli.rotations import continuous, from_matrix, inverse, multiply
 from stimuli.skeleton import JOINTS, role_parents
@@ -153,8 +153,14 @@ def _foot_axes(paths: dict[str, Floats], side: str, left: Floats) -> Floats:
     still = speed <= np.quantile(speed, 0.15)
     ahead = forward[still] * [1.0, 0.0, 1.0]
     level = _axes(np.tile([0.0, 1.0, 0.0], (int(still.sum()), 1)), np.cross([0.0, 1.0, 0.0], ahead))
-    correction = nearest_rotation(np.mean(np.swapaxes(axes[still], -1, -2) @ level, axis=0))
+    correction = _nearest_rotation(np.mean(np.swapaxes(axes[still], -1, -2) @ level, axis=0))
     return axes @ correction
+
+
+def _nearest_rotation(matrix: Floats) -> Floats:
+    """(3, 3) the rotation nearest to a matrix in the least squares sense."""
+    u, _, v = np.linalg.svd(matrix)
+    return np.asarray(u * [1.0, 1.0, np.sign(np.linalg.det(u @ v))] @ v)
 
 
 def _skeleton(
@@ -222,7 +228,7 @@ def _clip(recording: MarkerRecording, skeleton: _Skeleton, rotations: Floats, ro
 def _judged(
     clip: Clip, skeleton: _Skeleton, raw: dict[str, Floats], centres: dict[str, Floats], rotations: Floats, root: Floats
 ) -> MarkerFit:
-    there = marker_fitting.places(skeleton.body, rotations, root)
+    there = places(skeleton.body, rotations, root)
     squares: dict[str, Floats] = {}
     for joint, own in enumerate(skeleton.markers):
         for place, local in zip(own, skeleton.body.local[joint], strict=True):
