@@ -126,19 +126,23 @@ def _many_weights(tree: Tree, wanted: Mapping[str, NDArray[Any]]) -> tuple[NDArr
         count = len(next(iter(wanted.values())))
         return np.full((count, 1), tree.cycle, np.intp), np.ones((count, 1))
     values, places = np.asarray(wanted[tree.parameter]), np.array(tree.places)
-    for walker in (int(np.argmin(values)), int(np.argmax(values))):
-        _neighbours(tree, _of_one(wanted, walker))
-    low = np.clip(np.searchsorted(places, values, side="right") - 1, 0, max(len(places) - 2, 0))
+    for extreme in (values.min(), values.max()):
+        _neighbours(tree, {tree.parameter: float(extreme)})
+    low = np.searchsorted(places[1:-1], values, side="right")
     high = np.minimum(low + 1, len(places) - 1)
-    share = np.clip((values - places[low]) / np.where(high > low, places[high] - places[low], 1.0), 0.0, 1.0)
+    widths = np.diff(places) if len(places) > 1 else np.ones(1)
+    share = np.minimum(np.maximum((values - places[low]) / widths[low], 0.0), 1.0)
     if tree.follows:
         follows = np.array(tree.follows)
         off = np.abs(wanted["step_frequency"] - (1.0 - share) * follows[low] - share * follows[high])
         worst = int(np.argmax(off))
         one = _of_one(wanted, worst)
         _check_following(tree, one, int(low[worst]), int(high[worst]), float(share[worst]))
-    sides = [_of_children(tree.children, child, part, wanted) for child, part in ((low, 1.0 - share), (high, share))]
-    return np.concatenate([cycles for cycles, _ in sides], axis=1), np.concatenate([part for _, part in sides], axis=1)
+    pairs, parts = np.column_stack([low, high]), np.column_stack([1.0 - share, share])
+    leaves = [node.cycle for node in tree.children if isinstance(node, Leaf)]
+    if len(leaves) == len(tree.children):
+        return np.array(leaves, np.intp)[pairs], parts
+    return _of_children(tree.children, pairs, parts, wanted)
 
 
 def _of_one(wanted: Mapping[str, NDArray[Any]], walker: int) -> dict[str, float]:
@@ -146,22 +150,27 @@ def _of_one(wanted: Mapping[str, NDArray[Any]], walker: int) -> dict[str, float]
 
 
 def _of_children(
-    children: tuple[Leaf | Branch, ...], child: NDArray[np.intp], part: NDArray[Any], wanted: Mapping[str, NDArray[Any]]
+    children: tuple[Leaf | Branch, ...],
+    pairs: NDArray[np.intp],
+    parts: NDArray[Any],
+    wanted: Mapping[str, NDArray[Any]],
 ) -> tuple[NDArray[np.intp], NDArray[np.floating]]:
-    """Cycles and weights (N, M) that every walker takes from its own child, of which it wants a part (N,)."""
-    leaves = [node.cycle for node in children if isinstance(node, Leaf)]
-    if len(leaves) == len(children):
-        return np.array(leaves, np.intp)[child][:, None], part[:, None]
+    """Cycles and weights (N, M) that walkers take from their pairs of children (N, 2), of each of which a part (N, 2).
+
+    Every child is asked once, for all walkers that want a part of it.
+    """
+    taken = np.where(parts > 0.0, pairs, -1)
     found = []
-    for number in np.unique(child[part > 0.0]):
-        own = np.flatnonzero((child == number) & (part > 0.0))
-        found.append((own, *_many_weights(children[number], {name: v[own] for name, v in wanted.items()})))
-    width = max((cycles.shape[1] for _, cycles, _ in found), default=1)
-    cycles, weights = np.zeros((len(child), width), np.intp), np.zeros((len(child), width))
-    for own, chosen, shares in found:
-        cycles[own, : chosen.shape[1]] = chosen
-        weights[own, : chosen.shape[1]] = part[own, None] * shares
-    return cycles, weights
+    for number, child in enumerate(children):
+        own, place = np.nonzero(taken == number)
+        if len(own):
+            found.append((own, place, *_many_weights(child, {name: v[own] for name, v in wanted.items()})))
+    width = max(cycles.shape[1] for _, _, cycles, _ in found)
+    cycles, weights = np.zeros((*pairs.shape, width), np.intp), np.zeros((*pairs.shape, width))
+    for own, place, chosen, shares in found:
+        cycles[own, place, : chosen.shape[1]] = chosen
+        weights[own, place, : chosen.shape[1]] = parts[own, place, None] * shares
+    return cycles.reshape(len(pairs), -1), weights.reshape(len(pairs), -1)
 
 
 def coverage(tree: Tree) -> dict[str, tuple[float, float]]:

@@ -89,6 +89,13 @@ class WalkTable:
             soles=np.array([_sole_row(f.sole) for f, _, _ in people], np.float32),
         )
 
+    @cached_property
+    def different_trees(self) -> tuple[tuple[Tree, ...], Indices]:
+        """Each tree once, and which of them each person has: people whose trees are alike are weighed together."""
+        numbers: dict[Tree, int] = {}
+        own = [numbers.setdefault(tree, len(numbers)) for tree in self.trees]
+        return tuple(numbers), np.array(own, np.intp)
+
 
 @dataclass(frozen=True, eq=False)
 class Constants:
@@ -176,19 +183,20 @@ def mixed(table: WalkTable, who: Indices, speed: Floats, step_frequency: Floats)
 
     Raises CoverageError when one is outside its person's blend tree.
     """
-    cycles = np.zeros((len(who), 1), np.intp)
-    weights = np.zeros((len(who), 1))
-    for person in np.unique(who):
-        own = np.flatnonzero(who == person)
-        wanted = {"speed": speed[own], "step_frequency": step_frequency[own]}
-        chosen, shares = many_weights(table.trees[person], wanted)
-        if chosen.shape[1] > cycles.shape[1]:
-            more = ((0, 0), (0, chosen.shape[1] - cycles.shape[1]))
-            cycles, weights = np.pad(cycles, more), np.pad(weights, more)
-        cycles[own] = table.first_cycle[person]
-        cycles[own, : chosen.shape[1]] += chosen
+    trees, numbers = table.different_trees
+    found = []
+    for number, tree in enumerate(trees):
+        own = np.flatnonzero(numbers[who] == number)
+        if len(own):
+            wanted = {"speed": speed[own], "step_frequency": step_frequency[own]}
+            found.append((own, *many_weights(tree, wanted)))
+    width = max((chosen.shape[1] for _, chosen, _ in found), default=1)
+    cycles, weights = np.zeros((len(who), width), np.intp), np.zeros((len(who), width))
+    for own, chosen, shares in found:
+        cycles[own, : chosen.shape[1]] = chosen
         weights[own, : chosen.shape[1]] = shares
-    contacts = np.einsum("nm,nmc->nc", weights, table.contacts[cycles])
+    cycles += table.first_cycle[who][:, None]
+    contacts = np.einsum("nm,nmc->nc", weights, table.contacts.take(cycles, axis=0))
     return Mix(
         table=table,
         who=np.asarray(who, np.intp),
