@@ -7,19 +7,13 @@ within 1e-4. Knows no clock; `crowd_poses_compiled` does the same with numba.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from stimuli.blend import FOOT_CHANNELS
 from stimuli.crowds.table import PLANES, UPPER_COUNT, Constants, Mix, Singles
 from stimuli.legs import contact
 from stimuli.legs.two_bone import FURTHEST, STRAIGHTEST
 from stimuli.skeleton import JOINTS, Floats
 from stimuli.walker import LOWERING_SOFTNESS
-
-Components = Any
-"""The components of vectors (3), quaternions (4) or matrices (9, row by row), each a plane (..., N) float32."""
 
 UPPER_LEVELS = (
     (slice(1, 2), slice(0, 1)),
@@ -34,6 +28,8 @@ UPPER_LEVELS = (
 LEG_LEVELS = ((slice(15, 17), slice(13, 15)), (slice(17, 19), slice(15, 17)), (slice(19, 21), slice(17, 19)))
 """The same of the legs, below the hip joints."""
 
+LEVELS = (*UPPER_LEVELS, (slice(13, 15), slice(0, 1)), *LEG_LEVELS)
+
 
 def many_matrices(mix: Mix, phases: Floats, out: Singles | None = None) -> Singles:
     """(N, 21, 3, 4) float32: bind-pose vertices -> each walker's frame, at phases (N,) of the gait cycle.
@@ -44,33 +40,34 @@ def many_matrices(mix: Mix, phases: Floats, out: Singles | None = None) -> Singl
         out = np.empty((len(mix), len(JOINTS), 3, 4), np.float32)
     phase = np.asarray(phases, np.float64)
     phase = phase - np.floor(phase)
-    constants = mix.constants
-    body = _blended(mix.table.body, mix, phase)
+    body = _blended(mix.table.body[None], mix, phase[None])[:, 0]
     hips = body[4 * UPPER_COUNT :]
-    turn = np.empty((9, len(JOINTS), len(mix)), np.float32)
-    turn[:, :UPPER_COUNT] = _matrices(_world_turns(body[: 4 * UPPER_COUNT].reshape(4, UPPER_COUNT, -1)))
+    frames = np.empty((3, 4, len(JOINTS), len(mix)), np.float32)
+    turn = frames[:, :3]
+    _write_turns(turn[:, :, :UPPER_COUNT], _world_turns(body[: 4 * UPPER_COUNT].reshape(4, UPPER_COUNT, -1)))
     _pose_legs(mix, phase, hips, turn)
-    places = _places(constants, hips, turn)
-    places -= _turned(turn, constants.rest)
+    _move(frames[:, 3], turn, hips, mix.constants.rest)
     for plane, joint in enumerate(PLANES):
-        out[:, joint, :, :3] = turn[:, plane].reshape(3, 3, -1).transpose(2, 0, 1)
-        out[:, joint, :, 3] = places[:, plane].T
+        out[:, joint] = frames[:, :, plane].transpose(2, 0, 1)
     return out
 
 
-def _blended(table: Singles, mix: Mix, place: Floats) -> Singles:
-    """(columns, N): weighted mean over each walker's cycles at a place in the cycle, linear between samples."""
+def _blended(tables: Singles, mix: Mix, place: Floats) -> Singles:
+    """(columns, T, N): weighted mean over each walker's cycles at places (T, N) in the cycle, linear between samples.
+
+    tables: (T, rows, columns)
+    """
+    count, rows, columns = tables.shape
     position = place * mix.samples
     sample = np.minimum(position.astype(np.intp), mix.samples - 1)
     share = (position - sample).astype(np.float32)
-    total = np.zeros((len(mix), table.shape[1]), np.float32)
-    rows = np.empty_like(total)
-    for first_row, weight in zip(mix.rows.T, mix.weights.T, strict=True):
-        for step, part in ((0, weight * (1.0 - share)), (1, weight * share)):
-            np.take(table, first_row + (sample + step), axis=0, out=rows, mode="clip")
-            rows *= part[:, None]
-            total += rows
-    return np.ascontiguousarray(total.T)
+    first = sample + rows * np.arange(count)[:, None]
+    chosen = np.array([first, first + 1])[:, None] + mix.rows.T[:, None]  # (2, M, T, N)
+    parts = np.array([1.0 - share, share])[:, None] * mix.weights.T[:, None]
+    summed = 2 * mix.rows.shape[1]
+    found = tables.reshape(-1, columns).take(chosen.reshape(summed, -1).T, axis=0, mode="clip")
+    means = np.ascontiguousarray(parts.reshape(summed, -1).T)[:, None] @ found
+    return np.ascontiguousarray(means[:, 0].T).reshape(columns, count, -1)
 
 
 def _world_turns(local: Singles) -> Singles:
@@ -88,101 +85,98 @@ def _world_turns(local: Singles) -> Singles:
     return local
 
 
-def _matrices(turns: Singles) -> Components:
-    """Nine planes of the rotation matrices of unit quaternions (4, ..., N)."""
-    x, y, z, w = turns
+def _write_turns(turn: Singles, rotations: Singles) -> None:
+    """Writes the matrices (3, 3, ..., N) of unit quaternions (4, ..., N)."""
+    x, y, z, w = rotations
     x2, y2, z2 = x + x, y + y, z + z
     xx, yy, zz, xy, xz, yz = x * x2, y * y2, z * z2, x * y2, x * z2, y * z2
     wx, wy, wz = w * x2, w * y2, w * z2
-    return (1 - yy - zz, xy - wz, xz + wy, xy + wz, 1 - xx - zz, yz - wx, xz - wy, yz + wx, 1 - xx - yy)
+    turn[0, 0], turn[0, 1], turn[0, 2] = 1.0 - yy - zz, xy - wz, xz + wy
+    turn[1, 0], turn[1, 1], turn[1, 2] = xy + wz, 1.0 - xx - zz, yz - wx
+    turn[2, 0], turn[2, 1], turn[2, 2] = xz - wy, yz + wx, 1.0 - xx - yy
 
 
-def _turned(turn: Components, vector: Components) -> Singles:
-    """Three planes: vectors turned by matrices."""
-    x, y, z = vector
-    return np.stack([turn[k] * x + turn[k + 1] * y + turn[k + 2] * z for k in (0, 3, 6)])
+def _turned(turn: Singles, vector: Singles) -> Singles:
+    """(3, ..., N): vectors (3, ..., N) turned by matrices (3, 3, ..., N)."""
+    return np.asarray(np.einsum("rk...,k...->r...", turn, vector))
 
 
-def _places(constants: Constants, hips: Singles, turn: Singles) -> Singles:
-    """(3, 21, N) m: the joints, by depth."""
-    places = np.empty((3, len(JOINTS), hips.shape[-1]), np.float32)
-    places[:, 0] = hips
-    for joints, parents in (*UPPER_LEVELS, (slice(13, 15), slice(0, 1)), *LEG_LEVELS):
-        places[:, joints] = places[:, parents] + _turned(turn[:, parents], constants.offsets[:, joints])
-    return places
+def _move(moved: Singles, turn: Singles, hips: Singles, rest: Singles) -> None:
+    """Writes how far each joint's vertices are moved (3, 21, N) m, once they are turned about the ground point.
+
+    A joint is where its parent's vertices would put it, so from parent to child only the difference of their turns
+    counts, at the child's place at rest (3, 21, N).
+    """
+    moved[:, 0] = hips - _turned(turn[:, :, 0], rest[:, 0])
+    for joints, parents in LEVELS:
+        bend = turn[:, :, parents] - turn[:, :, joints]
+        moved[:, joints] = moved[:, parents] + _turned(bend, rest[:, joints])
 
 
 def _pose_legs(mix: Mix, phase: Floats, hips: Singles, turn: Singles) -> None:
-    """Writes the legs' world rotations into turn, and lowers the hips (3, N) where a leg would not reach."""
+    """Writes the legs' world rotations into turn, and lowers the hips (3, N) where a leg would not reach.
+
+    Where the ankle is and how far the hips come down is worked out in float64: see `_solved`.
+    """
     legs = mix.constants
-    own = np.stack([phase - mix.left_strike, phase])
+    own = np.array([phase - mix.left_strike, phase])
     own -= np.floor(own)
-    clock = contact.clock(own, mix.stance.T)
-    channels = np.stack([_blended(mix.table.feet[side], mix, clock[side]) for side in (0, 1)], axis=1)
-    pitch, clearance, travel, aside, yaw, knee_yaw = (channels[i] for i in range(len(FOOT_CHANNELS)))
-    place = mix.ahead.T + mix.stride * contact.footprint_travel(own, mix.stance.T)
+    stance = mix.stance.T
+    clock = contact.clock(own, stance)
+    pitch, clearance, travel, aside, yaw, knee_yaw = _blended(mix.table.feet, mix, clock)
+    place = mix.ahead.T + mix.stride * (contact.footprint_travel(own, stance) + travel)
     pitch = contact.flattened(pitch)
     bend = contact.toe_bend(pitch, contact.swing_progress(clock).astype(np.float32))
     forward, up = contact.planted(legs.sole, pitch, bend)
     cosine, sine = np.cos(yaw), np.sin(yaw)
-    stride = mix.stride.astype(np.float32)
-    ankle = (aside + sine * forward, up + clearance, place.astype(np.float32) + stride * travel + cosine * forward)
-    socket = _turned(turn[:, :1], legs.hip)
-    dx, dy, dz = (ankle[axis] - (hips[axis] + socket[axis]) for axis in range(3))
-    far = np.sqrt(dx * dx + dz * dz)
-    nearer = np.minimum(1.0, np.float32(FURTHEST) * (legs.thigh + legs.shank) / np.maximum(far, np.float32(1e-6)))
-    dx, dz = nearer * dx, nearer * dz
-    reach = STRAIGHTEST * (legs.thigh + legs.shank)
-    room = np.sqrt(np.maximum(reach * reach - dx * dx - dz * dz, 0.0))
-    excess = (-dy - room - clearance) * np.float32(1.0 / LOWERING_SOFTNESS)
-    lowering = np.float32(LOWERING_SOFTNESS) * np.logaddexp(np.float32(0.0), excess).sum(axis=0)
+    ankle = np.array([aside + sine * forward, up + clearance, place + cosine * forward])
+    way = ankle - hips[:, None] - _turned(turn[:, :, :1], legs.hip)
+    length = legs.bones.sum(axis=0)
+    far = np.sqrt(way[0] * way[0] + way[2] * way[2])
+    way[::2] *= np.minimum(1.0, FURTHEST * length / np.maximum(far, 1e-6))
+    reach = STRAIGHTEST * length
+    room = np.sqrt(np.maximum(reach * reach - way[0] * way[0] - way[2] * way[2], 0.0))
+    excess = (-way[1] - room - clearance) / LOWERING_SOFTNESS
+    lowering = LOWERING_SOFTNESS * contact.softly_positive(excess).sum(axis=0)
     hips[1] -= lowering
-    thigh, shank = _solved(legs, (dx, dy + lowering, dz), reach, knee_yaw)
-    turn[:, 13:15] = _product(thigh, legs.thigh_rest)
-    turn[:, 15:17] = _product(shank, legs.shank_rest)
-    turn[:, 17:19] = _foot(cosine, sine, pitch)
-    turn[:, 19:21] = _foot(cosine, sine, pitch + bend)
+    way[1] += lowering
+    turn[:, :, 13:17] = _solved(legs, way, reach, knee_yaw).reshape(3, 3, 4, -1)
+    _write_feet(turn[:, :, 17:21].reshape(3, 3, 2, 2, -1), cosine, sine, np.array([pitch, pitch + bend]))
 
 
-def _solved(legs: Constants, to_ankle: Components, reach: Singles, knee_yaw: Singles) -> tuple[Components, Components]:
-    """World frames (columns bone, hinge, their product) of thigh and shank, as legs.solve without its arc cosines."""
-    dx, dy, dz = to_ankle
-    far = np.sqrt(dx * dx + dy * dy + dz * dz)
-    dx, dy, dz = dx / far, dy / far, dz / far
+def _solved(legs: Constants, way: Floats, reach: Floats, knee_yaw: Singles) -> Singles:
+    """World rotations (3, 3, 2, 2, N) of thighs and shanks, as two_bone.solve without its arc cosines.
+
+    way: (3, 2, N) m from hip to ankle, float64: near a straight leg the knee is a hundred times as sensitive. The
+    angles' sines come from the triangle's area (Heron's formula).
+    """
+    far = np.sqrt(np.einsum("k...,k...->...", way, way))
+    down = (way / far).astype(np.float32)
     far = np.minimum(far, reach)
-    fx, fz = np.sin(knee_yaw), np.cos(knee_yaw)
-    along = fx * dx + fz * dz
-    fx, fy, fz = fx - along * dx, -along * dy, fz - along * dz
-    size = np.sqrt(fx * fx + fy * fy + fz * fz)
-    fx, fy, fz = fx / size, fy / size, fz / size
-    normal = (fy * dz - fz * dy, fz * dx - fx * dz, fx * dy - fy * dx)
-    frames = []
-    for near, other, sign in ((legs.thigh, legs.shank, 1.0), (legs.shank, legs.thigh, -1.0)):
-        c = np.clip((near * near + far * far - other * other) / (2.0 * near * far), -1.0, 1.0)
-        s = np.float32(sign) * np.sqrt(1.0 - c * c)
-        frames.append(_frame((c * dx + s * fx, c * dy + s * fy, c * dz + s * fz), normal))
-    return frames[0], frames[1]
+    ahead = np.array([np.sin(knee_yaw), np.zeros_like(knee_yaw), np.cos(knee_yaw)])
+    ahead -= (ahead[0] * down[0] + ahead[2] * down[2]) * down
+    ahead /= np.sqrt(np.einsum("k...,k...->...", ahead, ahead))
+    hinge = _cross(ahead, down)
+    near, other = legs.bones, legs.bones[::-1]
+    cosine = ((near * near + far * far - other * other) / (2.0 * near * far)).astype(np.float32)
+    bent = (near + other - far) * (near + other + far) * (far - near + other) * (far + near - other)
+    sine = (np.sqrt(np.maximum(bent, 0.0)) / (2.0 * near * far)).astype(np.float32)
+    sine[1] *= -1.0
+    bone = cosine * down[:, None] + sine * ahead[:, None]
+    hinge = np.broadcast_to(hinge[:, None], bone.shape)
+    frame = np.array([bone, hinge, _cross(hinge, bone)])
+    return np.asarray(np.einsum("kr...,kc...->rc...", frame, legs.bones_at_rest))
 
 
-def _frame(along: Components, hinge: Components) -> Components:
-    """Nine planes, row by row: columns bone, hinge, their product."""
-    (ax, ay, az), (hx, hy, hz) = along, hinge
-    return (ax, hx, hy * az - hz * ay, ay, hy, hz * ax - hx * az, az, hz, hx * ay - hy * ax)
+def _cross(first: Singles, second: Singles) -> Singles:
+    """The vector product of vectors (3, ..., N)."""
+    (ax, ay, az), (bx, by, bz) = first, second
+    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
-def _product(first: Components, second: Components) -> Components:
-    """Nine planes of the product of two matrices."""
-    return [
-        first[3 * row] * second[column]
-        + first[3 * row + 1] * second[3 + column]
-        + first[3 * row + 2] * second[6 + column]
-        for row in range(3)
-        for column in range(3)
-    ]
-
-
-def _foot(cosine: Singles, sine: Singles, pitch: Singles) -> Components:
-    """Nine planes: toes up by pitch, then headed to a yaw given by its cosine and sine."""
+def _write_feet(turn: Singles, cosine: Singles, sine: Singles, pitch: Singles) -> None:
+    """Writes (3, 3, ..., N): toes up by pitch, then headed to a yaw given by its cosine and sine."""
     up, level = np.sin(pitch), np.cos(pitch)
-    nothing = np.zeros_like(up)
-    return (cosine, -sine * up, sine * level, nothing, level, up, -sine, -cosine * up, cosine * level)
+    turn[0, 0], turn[0, 1], turn[0, 2] = cosine, -sine * up, sine * level
+    turn[1, 0], turn[1, 1], turn[1, 2] = 0.0, level, up
+    turn[2, 0], turn[2, 1], turn[2, 2] = -sine, -cosine * up, cosine * level

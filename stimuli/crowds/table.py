@@ -101,18 +101,17 @@ class WalkTable:
 class Constants:
     """The figures of N walkers as planes, float32.
 
-    offsets, rest: (3, 21, N) m, as in WalkTable
-    thigh, shank:  (2, N) m; hip (3, 2, N) m; thigh_rest, shank_rest (9, 2, N) rows of legs.Leg's frames
-    sole:          lengths (N,) m
+    rest:         (3, 21, N) m, as in WalkTable
+    hip:          (3, 2, N) m, from the hips to the left and the right hip joint
+    bones:        (2, 2, N) m, lengths of both thighs and of both shanks, float64
+    bones_at_rest: (3, 3, 2, 2, N) thigh_rest and shank_rest as in two_bone.Leg, of both legs
+    sole:         lengths (N,) m
     """
 
-    offsets: Singles
     rest: Singles
-    thigh: Singles
-    shank: Singles
     hip: Singles
-    thigh_rest: Singles
-    shank_rest: Singles
+    bones: Floats
+    bones_at_rest: Singles
     sole: Any
 
     @classmethod
@@ -120,13 +119,10 @@ class Constants:
         """The figures of walkers, each a person of the table."""
         legs = np.ascontiguousarray(table.legs[who].transpose(2, 1, 0))
         return cls(
-            offsets=np.ascontiguousarray(table.offsets[who].transpose(2, 1, 0)),
             rest=np.ascontiguousarray(table.rest[who].transpose(2, 1, 0)),
-            thigh=legs[0],
-            shank=legs[1],
             hip=legs[2:5],
-            thigh_rest=legs[5:14],
-            shank_rest=legs[14:23],
+            bones=legs[:2].astype(np.float64),
+            bones_at_rest=np.ascontiguousarray(legs[5:].reshape(2, 3, 3, 2, -1).transpose(1, 2, 0, 3, 4)),
             sole=Soles(*np.ascontiguousarray(table.soles[who].T)),
         )
 

@@ -84,7 +84,7 @@ def toe_bend(pitch: Any, swing: Any) -> Any:
     In stance (swing 0) the toes stay on the ground as far as they bend; in swing they straighten within half of it.
     """
     heel_up = np.maximum(-pitch, 0.0)
-    over = TOE_BEND_SOFTNESS * np.logaddexp(0.0, (heel_up - TOE_BEND_LIMIT) / TOE_BEND_SOFTNESS)
+    over = TOE_BEND_SOFTNESS * softly_positive((heel_up - TOE_BEND_LIMIT) / TOE_BEND_SOFTNESS)
     return np.maximum(heel_up - over, 0.0) * (1.0 - smooth_step(2.0 * swing))
 
 
@@ -93,10 +93,11 @@ def planted(sole: Sole, pitch: Any, bend: Any) -> tuple[Any, Any]:
 
     pitch: rad, positive toes up; bend: rad, extension of the toes.
     """
-    heel_up, heel_ahead = _turn(sole.ankle_height, sole.heel, pitch)
+    turned = np.cos(pitch), np.sin(pitch)
+    heel_up, heel_ahead = _turn(sole.ankle_height, sole.heel, turned)
+    ankle_up, ankle_ahead = _turn(sole.ankle_height - sole.ball_height, -sole.ball, turned)
     toe_pitch = np.minimum(pitch + bend, 0.0)
-    ball_up, ball_ahead = _turn(sole.ball_height, sole.ball - sole.tip, toe_pitch)
-    ankle_up, ankle_ahead = _turn(sole.ankle_height - sole.ball_height, -sole.ball, pitch)
+    ball_up, ball_ahead = _turn(sole.ball_height, sole.ball - sole.tip, (np.cos(toe_pitch), np.sin(toe_pitch)))
     on_heel = pitch >= 0.0
     forward = np.where(on_heel, heel_ahead - sole.heel, sole.tip + ball_ahead + ankle_ahead)
     return forward, np.where(on_heel, heel_up, ball_up + ankle_up)
@@ -130,18 +131,21 @@ def footprint_travel(phase: Any, stance: Any) -> Any:
     In stance it moves back with the ground (-phase). In swing it returns on the quintic that leaves and meets the
     ground's speed without a jump in velocity or acceleration, and arrives just before the foot does.
     """
-    w = np.clip((phase - stance) / ((1.0 - stance) * ARRIVAL), 0.0, 1.0)
-    rise = w * w * w * (10.0 + w * (-15.0 + 6.0 * w))
-    return np.where(phase < stance, -phase, -phase + rise)
+    return smooth_step((phase - stance) / ((1.0 - stance) * ARRIVAL)) - phase
 
 
 def smooth_step(x: Any) -> Any:
     """0 below 0, 1 above 1, between them the quintic with no velocity and acceleration at its ends."""
-    x = np.clip(x, 0.0, 1.0)
+    x = np.minimum(np.maximum(x, 0.0), 1.0)
     return x * x * x * (10.0 + x * (-15.0 + 6.0 * x))
 
 
-def _turn(up: Any, ahead: Any, pitch: Any) -> tuple[Any, Any]:
-    """A vector of the sagittal plane turned toes-up by pitch."""
-    cosine, sine = np.cos(pitch), np.sin(pitch)
+def softly_positive(x: Any) -> Any:
+    """log(1 + exp(x)): x where well above 0, 0 well below, smooth between."""
+    return np.maximum(x, 0.0) + np.log1p(np.exp(-np.abs(x)))
+
+
+def _turn(up: Any, ahead: Any, pitch: tuple[Any, Any]) -> tuple[Any, Any]:
+    """A vector of the sagittal plane turned toes-up by a pitch, of which the cosine and the sine are given."""
+    cosine, sine = pitch
     return up * cosine + ahead * sine, ahead * cosine - up * sine
