@@ -46,7 +46,7 @@ class WalkTable:
     first_row: (cycles,) row of a cycle's first sample; the last of its samples + 1 rows repeats the first
     samples:   (cycles,) samples per cycle
     trees:     of each person, and first_cycle of each in the table
-    offsets, rest: (P, 21, 3) m, from the parent joint and from the ground, in the rest pose, joints by depth
+    rest:      (P, 21, 3) m, from the ground, in the rest pose, joints by depth
     legs:      (P, 2, 23) thigh, shank (m), hip (m), thigh_rest, shank_rest as in legs.Leg
     soles:     (P, 5) ankle height, heel, ball, ball height, tip (m) as in contact.Sole
     """
@@ -58,7 +58,6 @@ class WalkTable:
     samples: Indices
     trees: tuple[Tree, ...]
     first_cycle: Indices
-    offsets: Singles
     rest: Singles
     legs: Singles
     soles: Singles
@@ -83,7 +82,6 @@ class WalkTable:
             samples=samples.astype(np.intp),
             trees=tuple(tree for _, _, tree in people),
             first_cycle=np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.intp),
-            offsets=np.array([f.skeleton.offsets for f, _, _ in people], np.float32)[:, PLANES],
             rest=np.array([f.skeleton.positions for f, _, _ in people], np.float32)[:, PLANES],
             legs=np.array([[_leg_row(leg) for leg in f.legs] for f, _, _ in people], np.float32),
             soles=np.array([_sole_row(f.sole) for f, _, _ in people], np.float32),
