@@ -105,7 +105,12 @@ class Journal:
                 self._idle.notify_all()
 
     def _last_words(self, failure: Exception) -> None:
-        """Tries once to add why the run ends here; a full disk often has room for one short line."""
+        """Tries once to add why the run ends here; a full disk often has room for one short line.
+
+        Not without a header before it: the file would then be no journal, and the run could never be begun.
+        """
+        if not self._last:
+            return
         with suppress(Exception):
             self._append(Ended(self._time, f"not written: {_reason(failure)}"[:120]))
             os.fsync(self._file.fileno())
@@ -138,38 +143,44 @@ def _reason(failure: Exception) -> str:
 
 def create_journal(run: Run, header: Header) -> Journal:
     """The journal of a new run, its header on disk; raises UsageError when one is there already."""
-    _set_aside_unbegun(run)
-    try:
-        file = open(run.journal, "xb", buffering=0)  # noqa: SIM115 - the Journal closes it
-    except FileExistsError:
-        raise UsageError(f"{run.journal} exists already; nothing is ever overwritten.") from None
-    except OSError as error:
-        raise UsageError(
-            f"{run.journal} cannot be made ({error.strerror}); choose another folder with --data."
-        ) from None
-    lock(file, run.journal)
-    journal = Journal(file, run.journal)
+    journal = Journal(_empty_file(run), run.journal)
     try:
         journal.write([header])
         journal.wait()
         _sync_folder(run.folder)
     except RunError as error:
-        file.close()
+        with suppress(RunError):
+            journal.close()
         raise UsageError(
             f"{run.journal} cannot be written ({error.reason}); make room or choose another folder with --data."
         ) from None
     return journal
 
 
-def _set_aside_unbegun(run: Run) -> None:
-    """Renames a journal without even a whole header, left by a kill in its first moment, so a run can begin."""
-    if not run.journal.exists() or journal_lines(run.journal)[0]:
-        return
-    with open(run.journal, "r+b") as file:
+def _empty_file(run: Run) -> IO[bytes]:
+    """The locked file of a new run's journal; what a kill in a run's first moment left in it is set aside.
+
+    Nothing is renamed or removed, as Windows lets nobody do that to an open file.
+    """
+    try:
+        new = not run.journal.exists()
+        file = open(run.journal, "xb" if new else "r+b", buffering=0)  # noqa: SIM115 - the Journal closes it
+    except FileExistsError:
+        raise UsageError(f"{run.journal} exists already; nothing is ever overwritten.") from None
+    except OSError as error:
+        raise UsageError(
+            f"{run.journal} cannot be made ({error.strerror}); choose another folder with --data."
+        ) from None
+    try:
         lock(file, run.journal)
         if journal_lines(run.journal)[0]:
-            raise UsageError(f"{run.journal} was begun by another gaitlab just now; use another participant ID.")
-        os.rename(run.journal, _torn_name(run.folder))
+            raise UsageError(f"{run.journal} exists already; nothing is ever overwritten.")
+        if not new:
+            _set_aside(file, run.folder, 0)
+    except BaseException:
+        file.close()
+        raise
+    return file
 
 
 def _torn_name(folder: Path) -> Path:
@@ -193,7 +204,9 @@ def reopen_journal(run: Run) -> tuple[Journal, Run, int]:
         run = replace(run, lines=text.records)
         if run.end:
             raise UsageError(f"the run in {run.folder} has {run.end} meanwhile; there is nothing to go on with.")
-        _set_torn_aside(file, run, text.torn)
+        end = file.seek(0, os.SEEK_END)
+        if text.torn:
+            _set_aside(file, run.folder, end - text.torn)
     except UsageError:
         file.close()
         raise
@@ -205,21 +218,20 @@ def reopen_journal(run: Run) -> tuple[Journal, Run, int]:
     return Journal(file, run.journal, text.last), run, text.torn
 
 
-def _set_torn_aside(file: IO[bytes], run: Run, torn: int) -> None:
-    size = os.fstat(file.fileno()).st_size
-    if torn:
-        file.seek(size - torn)
-        name = _torn_name(run.folder)
-        try:
-            with open(name, "xb") as copy:
-                copy.write(file.read())
-                copy.flush()
-                os.fsync(copy.fileno())
-        except OSError:
-            name.unlink(missing_ok=True)
-            raise
-        file.truncate(size - torn)
-    file.seek(0, os.SEEK_END)
+def _set_aside(file: IO[bytes], folder: Path, begin: int) -> None:
+    """Copies the bytes of a journal from a place on to `journal.torn-<n>`, then cuts them off."""
+    file.seek(begin)
+    name = _torn_name(folder)
+    try:
+        with open(name, "xb") as copy:
+            copy.write(file.read())
+            copy.flush()
+            os.fsync(copy.fileno())
+    except OSError:
+        name.unlink(missing_ok=True)
+        raise
+    file.truncate(begin)
+    file.seek(begin)
 
 
 def _sync_folder(folder: Path) -> None:

@@ -16,9 +16,8 @@ from typing import IO, Any
 from experiment_app.crash_note import crash_reason
 from experiment_app.errors import UsageError
 from protocols.journal_text import DamagedJournalError, JournalText, read_text
-from protocols.orders.assignment import GIVEN_BACK
 from protocols.record import FORMAT, OPENINGS
-from protocols.resuming import Progress
+from protocols.resuming import Progress, over
 from protocols.session import answer_columns
 
 PARTICIPANT = re.compile(r"[A-Za-z0-9]{1,32}")
@@ -50,9 +49,7 @@ class Run:
     @property
     def end(self) -> str:
         """Why the run ended ("finished", "declined", "dropped out"), or "" while it can be continued."""
-        reasons = [line["reason"] for line in self.lines if line["kind"] == "end"]
-        final = [reason for reason in reasons if reason in ("finished", *GIVEN_BACK)]
-        return final[0] if final else ""
+        return over(line["reason"] for line in self.lines if line["kind"] == "end")
 
     @property
     def sittings(self) -> int:

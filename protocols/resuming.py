@@ -5,12 +5,24 @@ Knows no file and no clock; what a journal says has been done is an argument.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from protocols.orders.adaptive import Tracks, after_response, ended
+from protocols.orders.assignment import GIVEN_BACK
 from protocols.plan import Plan, Step, TextStep, TrialStep
 from protocols.study import Resume, TextPage
+
+FINAL = ("finished", *GIVEN_BACK)
+"""Ends after which a run cannot go on."""
+
+
+def over(ends: Iterable[str]) -> str:
+    """Why a run is over, from the reasons of its ends in order; "" while it can go on.
+
+    What goes wrong after the first final one, as with a device on the last page, is another end and changes nothing.
+    """
+    return next((reason for reason in ends if reason in FINAL), "")
 
 
 @dataclass(frozen=True)

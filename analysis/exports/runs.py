@@ -13,6 +13,7 @@ from typing import Any
 from analysis.errors import AnalysisError
 from analysis.recorded.copies import not_read, without_copies
 from analysis.recorded.journal import journals_of, read_records
+from protocols.resuming import over
 
 SAFETY = 1.0
 """s at least between two sittings of a run, where the computer's clock does not tell how long it was."""
@@ -65,9 +66,10 @@ class ExportedRun:
 
     @property
     def ended(self) -> str:
-        """Why the last sitting ended; "" when no end was recorded."""
+        """Why the run is over, else why its last sitting ended; "" when no end was recorded."""
         ends = self.of("end")
-        return str(ends[-1].record["reason"]) if ends and ends[-1].sitting == self.sittings else ""
+        last = str(ends[-1].record["reason"]) if ends and ends[-1].sitting == self.sittings else ""
+        return over(str(end.record["reason"]) for end in ends) or last
 
     @property
     def sittings(self) -> int:

@@ -30,7 +30,7 @@ class RecordedRun:
     header: dict[str, Any]
     answers: dict[str, Any]
     trials: tuple[dict[str, Any], ...]  # by trial number
-    ended: str  # reason of the last end; "" when there is none
+    ended: str  # why the run is over, else the reason of its last end; "" when there is none
     repeated: tuple[int, ...]  # trial numbers recorded more than once
     torn: bool  # the last line was cut off
     chained: bool  # each line names the one before, so none can be missing
@@ -82,10 +82,13 @@ def read_records(path: Path, name: str = "") -> JournalText:
 
 def read_journal(path: Path, name: str = "") -> RecordedRun:
     """One journal; raises AnalysisError naming the file and line where an inner line is damaged."""
+    from protocols.resuming import over
+
     name = name or path.name
     text = read_records(path, name)
     header = text.records[0]
-    answers, trials, repeated, ended = dict(header.get("group") or {}), {}, [], ""
+    answers, trials, repeated = dict(header.get("group") or {}), {}, []
+    ends: list[str] = []
     for place, record in enumerate(text.records, start=1):
         kind = record.get("kind")
         try:
@@ -97,9 +100,10 @@ def read_journal(path: Path, name: str = "") -> RecordedRun:
                     repeated.append(number)
                 trials[number] = record
             elif kind == "end":
-                ended = str(record["reason"])
+                ends.append(str(record["reason"]))
         except (KeyError, TypeError, ValueError) as error:
             raise AnalysisError(f"{name}, line {place}: a {kind} record without a usable {error}.") from None
+    ended = over(ends) or "".join(ends[-1:])
     return RecordedRun(
         path, name, str(header.get("participant", "")), int(header.get("run", 1)), header, answers,
         tuple(trials[n] for n in sorted(trials)), ended, tuple(dict.fromkeys(repeated)), bool(text.torn), text.chained,

@@ -1,11 +1,12 @@
 """Who takes part in a study, from all journals of its folder: the order of arrival and the places given back.
 
-Only first and last lines are read, so that a folder of hundreds of runs is looked through in a moment.
+Only first lines and ends are read, so that a folder of hundreds of runs is looked through in a moment.
 """
 
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,10 @@ from experiment_app.errors import UsageError
 from experiment_app.run_folder import JOURNAL, journal_lines, run_numbers, study_folder
 from protocols.orders.assignment import Arrival, place_of
 from protocols.record import DamagedLineError, decode_line
+from protocols.resuming import over
 
 END_BYTES = 4096
-"""Bytes at the end of a journal that hold its last line when that is an end."""
+"""Bytes at the end of a journal that hold its last lines where the run is over."""
 
 WITHDRAWN = "withdrawn.jsonl"
 """Beside sourcedata: one line for every place given back, and nothing else of those who withdrew."""
@@ -63,21 +65,25 @@ def arrivals(data: Path, study: str) -> list[Arrival]:
             header = header_of(latest)
             if header is None:
                 continue
-            known.append(Arrival(person.name.removeprefix("sub-"), int(header["participant_number"]), last_end(latest)))
+            known.append(Arrival(person.name.removeprefix("sub-"), int(header["participant_number"]), why_over(latest)))
             break
     return known
 
 
-def last_end(journal: Path) -> str:
-    """Why a run ended, from the last line of its journal alone; "" when that is no end."""
+def why_over(journal: Path) -> str:
+    """Why a run is over, from the end of its journal alone; "" while it can go on.
+
+    The last line need not be the one: the pulse that announced the end, or what went wrong after it, may follow.
+    """
     with open(journal, "rb") as file:
         file.seek(max(file.seek(0, os.SEEK_END) - END_BYTES, 0))
-        tail = file.read().rstrip(b"\n").split(b"\n")[-1]
-    try:
-        line = decode_line(tail.decode("utf-8"))
-    except (DamagedLineError, UnicodeDecodeError):
-        return ""
-    return str(line["reason"]) if line["kind"] == "end" else ""
+        tail = file.read().split(b"\n")
+    reasons = []
+    for part in tail:
+        with suppress(DamagedLineError, UnicodeDecodeError):  # cut off by this reader, or by a kill
+            line = decode_line(part.decode("utf-8"))
+            reasons += [str(line["reason"])] if line["kind"] == "end" else []
+    return over(reasons)
 
 
 def places_given_back(folder: Path) -> list[int]:
@@ -89,11 +95,10 @@ def places_given_back(folder: Path) -> list[int]:
 
 
 def first_headers(data: Path, study: str) -> list[dict[str, Any]]:
-    """The header of every participant's first run, by participant; only first lines are read, damaged ones skipped."""
+    """The header of every participant's first run that has one, by participant; only first lines are read."""
     headers = []
     for person in sorted((study_folder(data, study) / "sourcedata").glob("sub-*")):
-        for path in sorted(person.glob(f"run-*/{JOURNAL}"))[:1]:
-            header = header_of(path)
-            if header is not None:
-                headers.append(header)
+        numbers = run_numbers(data, study, person.name.removeprefix("sub-"))
+        found = (header_of(person / f"run-{number}" / JOURNAL) for number in numbers)
+        headers += [header for header in found if header is not None][:1]
     return headers

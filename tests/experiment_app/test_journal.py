@@ -245,6 +245,38 @@ def test_a_run_killed_before_its_header_was_whole_begins_anew_and_keeps_the_scra
     assert journal_lines(run.run.journal)[0][-2]["reason"] == "finished"
 
 
+def test_an_open_journal_is_never_renamed_or_removed_as_windows_would_refuse_that(tmp_path, monkeypatch):
+    folder = tmp_path / "walk_ratio" / "sourcedata" / "sub-P01" / "run-1"
+    folder.mkdir(parents=True)
+    (folder / "journal.jsonl").write_bytes(b"torn")
+
+    def refused(*_: object) -> None:
+        raise PermissionError(13, "The process cannot access the file because it is being used by another process")
+
+    for name in ("rename", "replace", "unlink", "remove"):
+        monkeypatch.setattr(os, name, refused)
+    play(opened(tmp_path))
+    monkeypatch.undo()
+    assert participant_runs(tmp_path, "walk_ratio", "P01")[0].end == "finished"
+    assert (folder / "journal.torn-1").read_bytes() == b"torn"
+
+
+def test_a_disk_with_room_for_a_few_words_but_no_header_leaves_nothing_in_the_way_of_the_next_run(
+    tmp_path, monkeypatch
+):
+    def refused(file, line: str) -> None:  # type: ignore[no-untyped-def]
+        if len(line) > 1000:
+            raise OSError(28, "No space left on device")
+        append_line(file, line)
+
+    monkeypatch.setattr("experiment_app.journal.append_line", refused)
+    with pytest.raises(UsageError, match="No space left on device"):
+        opened(tmp_path)
+    monkeypatch.undo()
+    play(opened(tmp_path))
+    assert participant_runs(tmp_path, "walk_ratio", "P01")[0].end == "finished"
+
+
 @pytest.mark.parametrize("reader", ["replay", "console"])
 def test_a_journal_that_lost_its_header_is_refused_in_a_sentence(tmp_path, reader, capsys):
     folder = tmp_path / "walk_ratio" / "sourcedata" / "sub-P01" / "run-1"

@@ -7,14 +7,21 @@ import pty
 import re
 import sys
 import types
+from contextlib import suppress
 
 import pytest
 
+from analysis.exports.runs import read_runs
+from analysis.recorded.journal import read_study
 from experiment_app.command import run
 from experiment_app.errors import RunError, UsageError
 from experiment_app.markers import triggers
 from experiment_app.markers.triggers import Triggering, open_line, trigger_line, triggering
+from experiment_app.participants.arrivals import arrivals
+from experiment_app.run_folder import journal_lines
 from protocols.record import Ended, Paused, Resumed, TrialBegun, TriggerSent
+from tests.experiment_app.sessions import opened, play
+from tests.journals import rewrite
 
 
 class Line:
@@ -63,6 +70,30 @@ def test_when_the_line_is_pulled_out_everything_is_still_recorded():
     with pytest.raises(RunError, match="serial:X is gone"):
         Triggering(kept, Line(good=1), "serial:X", now=lambda: 0.0).write(RECORDS)
     assert [record for record in kept.records if not isinstance(record, TriggerSent)] == RECORDS
+
+
+def test_a_place_is_free_again_though_the_pulse_of_the_end_or_a_failure_is_written_after_it(tmp_path):
+    run, line = opened(tmp_path), Line(good=1)
+    with suppress(RunError), run.journal as journal:
+        recorder = Triggering(journal, line, "serial:X", now=lambda: 1.0)
+        recorder.write([Ended(4.0, "declined")])
+        recorder.write([Paused(5.0, "pause")])
+    kinds = [record["kind"] for record in journal_lines(run.run.journal)[0]]
+    assert kinds[-4:] == ["end", "trigger", "pause", "end"]
+    assert [one.ended for one in arrivals(tmp_path, "walk_ratio")] == ["declined"]
+    other = opened(tmp_path, "P02")
+    other.journal.close()
+    assert other.participant_number == run.participant_number
+
+
+def test_who_has_finished_counts_though_the_line_went_away_on_the_last_page(tmp_path):
+    run = opened(tmp_path)
+    play(run)
+    late = {"kind": "end", "time": 99.0, "reason": "failed: RunError: the trigger line serial:X is gone"}
+    rewrite(run.run.journal, lambda records: [*records, late])
+    (recorded,) = read_study(tmp_path / "walk_ratio").runs
+    (exported,), _ = read_runs(tmp_path / "walk_ratio")
+    assert (recorded.ended, exported.ended) == ("finished", "finished")
 
 
 @pytest.mark.parametrize("text", ["serial", "usb:1", "parallel:", "parallel:/dev/there-is-no-such-port"])
