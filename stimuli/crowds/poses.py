@@ -2,7 +2,7 @@
 
 Every number of a walker is a plane over all walkers (structure of arrays), so an operation is one pass over
 contiguous memory; joints are turned one level of depth at a time, as quaternions. Gives the matrices of drawn_pose
-within 1e-4. Knows no clock; `crowd_poses_compiled` does the same with numba.
+within 1e-4. Knows no clock; `compiled_poses` does the same with numba.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ UPPER_LEVELS = (
     (slice(9, 11), slice(7, 9)),
     (slice(11, 13), slice(9, 11)),
 )
-"""Per depth below the hips: the joints of crowd_table.DEPTH_ORDER, and their parents."""
+"""Per depth below the hips: the joints of table.DEPTH_ORDER, and their parents."""
 
 LEG_LEVELS = ((slice(15, 17), slice(13, 15)), (slice(17, 19), slice(15, 17)), (slice(19, 21), slice(17, 19)))
 """The same of the legs, below the hip joints."""
