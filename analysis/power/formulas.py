@@ -59,7 +59,8 @@ def power_rm_anova(
     if f is not None and eta_p2 is not None:
         raise AnalysisError("Give f or eta_p2, not both.")
     if (effect != "between" and measures < 2) or (effect != "within" and groups < 2):
-        raise AnalysisError(f"A {effect} effect needs two or more {'groups' if measures > 1 else 'measures'}.")
+        few = "measures" if effect != "between" and measures < 2 else "groups"
+        raise AnalysisError(f"A {effect} effect needs two or more {few}.")
     if not (-1 / max(1, measures - 1) < rho < 1 and 0 < epsilon <= 1):
         raise AnalysisError("rho must be a possible correlation below 1, and epsilon above 0 and at most 1.")
     if (eta_p2 is not None and not 0 <= eta_p2 < 1) or (f is not None and not 0 <= f < math.inf):

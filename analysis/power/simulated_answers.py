@@ -6,6 +6,7 @@ participants and from trial to trial.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -15,6 +16,7 @@ from scipy import special
 
 from analysis.planned.plan import AnalysisPlan
 from analysis.planned.setting_values import values_of
+from protocols.limited_scale import latent_mean
 from protocols.study import Simulation
 
 QUICKEST = 0.2  # s, the shortest response time of a simulated observer
@@ -51,8 +53,8 @@ class Choosers:
 class Raters:
     """A population that rates on a scale, and the trials it does.
 
-    rating: (trials,) mean; spread, noise: s.d. between participants and from trial to trial; lowest, highest, step: of
-    the scale, step None where it is continuous.
+    rating: (trials,) mean before it is kept on the scale; spread, noise: s.d. between participants and from trial to
+    trial; lowest, highest, step: of the scale, step None where it is continuous.
     """
 
     rating: np.ndarray
@@ -85,9 +87,9 @@ def raters(
 ) -> Raters:
     """The population and the trials of a rating study (as a plain dict)."""
     part, scale = simulation.rating, (study.get("task") or {}).get("scale") or {}
-    step = scale.get("step", 1.0)
+    step, low, high = scale.get("step", 1.0), float(scale.get("minimum", 0.0)), float(scale.get("maximum", 4.0))
+    means = [(low + high) / 2.0] * len(conditions) if part.rating is None else values_of(part.rating, conditions)
+    felt = [latent_mean(float(mean), math.hypot(part.spread, part.noise), low, high) for mean in means]
     return Raters(
-        np.tile(np.array(values_of(part.rating, conditions), dtype=float), plan.repetitions),
-        part.spread, part.noise, float(scale.get("minimum", 0.0)), float(scale.get("maximum", 4.0)),
-        None if step is None else float(step),
-    )  # fmt: skip
+        np.tile(felt, plan.repetitions), part.spread, part.noise, low, high, None if step is None else float(step)
+    )

@@ -49,8 +49,8 @@ def experiment_model(study: Mapping[str, Any], participants: int | None = None) 
             "Power cannot be simulated for an adaptive order, whose levels follow from the answers; simulate "
             "participants with `gaitlab simulate` instead."
         )
-    n = participants or plan.planned
-    if not n:
+    n = plan.planned if participants is None else participants
+    if n is None:
         raise AnalysisError("Say how many participants to simulate; the study file plans no number.")
     conditions = _conditions(study, plan)
     observers: Adjusters | Choosers | Raters

@@ -17,6 +17,7 @@ from analysis.errors import AnalysisError, check_share
 from analysis.planned.plan import AnalysisPlan
 from analysis.planned.plan_parts import TTestPlan
 from analysis.power.simulated_experiments import ExperimentModel, cell_means_of, experiment_model
+from analysis.statistics.columns import numeric_label
 from analysis.statistics.linear_fit import NO_VARIANCE
 from analysis.statistics.many_anovas import many_anovas
 
@@ -136,15 +137,16 @@ def _count(job: tuple[ExperimentModel, int, range, float]) -> np.ndarray:
 
 def _t_p(values: np.ndarray, model: ExperimentModel, factor: str, level: str, against: float) -> np.ndarray:
     """(S,) p values of the one-sample t test of participants' means at one level; nan where all means are equal."""
+    place = [numeric_label(name) for name in model.design.levels(factor)].index(numeric_label(level))
     if factor in model.design.within:
         names = list(model.design.within)
         shape = [len(levels) for levels in model.design.within.values()]
         cube = values.reshape(*values.shape[:2], *shape)
-        taken = np.take(cube, model.design.within[factor].index(level), axis=2 + names.index(factor))
+        taken = np.take(cube, place, axis=2 + names.index(factor))
         people = taken.reshape(*values.shape[:2], -1).mean(axis=2)
     else:
         column = list(model.design.between).index(factor)
-        members = model.design.groups[:, column] == model.design.between[factor].index(level)
+        members = model.design.groups[:, column] == place
         people = values[:, members].mean(axis=2)
     n, spread = people.shape[1], people.std(axis=1, ddof=1)
     spread[spread**2 * (n - 1) <= NO_VARIANCE * np.sum(people**2, axis=1)] = np.nan

@@ -44,7 +44,7 @@ def simulate_power(
     if experiments < 1:
         raise AnalysisError(f"{experiments} experiments cannot be simulated; at least 1 is needed.")
     loaded = as_dict(study)
-    counts = list(dict.fromkeys(participants)) or [plan_of(loaded).planned or 0]
+    counts: list[int | None] = [*dict.fromkeys(participants)] or [plan_of(loaded).planned]
     tables = [
         power_by_simulation(
             loaded, experiments=experiments, participants=n, seed=seed, shard=shard, workers=workers, client=client,

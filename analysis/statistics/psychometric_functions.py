@@ -17,6 +17,9 @@ SHAPES = ("logistic", "normal")
 COLUMNS = ("n", "intercept", "slope", "threshold", "threshold_se", "jnd", "lapse", "deviance", "df")
 BOOTSTRAP_COLUMNS = ("threshold_low", "threshold_high", "slope_low", "slope_high")
 
+FLAT = 1e-9
+"""Of the argument of F, from the lowest level to the highest: less is rounding, not a slope."""
+
 
 @dataclass(frozen=True)
 class _Fit:
@@ -29,6 +32,10 @@ class _Fit:
     @property
     def threshold(self) -> float:
         return -self.intercept / self.slope
+
+    def flat(self, x: np.ndarray) -> bool:
+        """Whether it neither rises nor falls along x, so that no level is its threshold."""
+        return abs(self.slope) * float(np.ptp(x)) < FLAT
 
 
 def psychometric(
@@ -55,7 +62,7 @@ def psychometric(
     Returns the columns of `by`, n, intercept, slope, threshold (level where F = .5), threshold_se
     (delta method), jnd (level from F = .5 to F = .75), lapse, deviance, df, and with bootstrap
     threshold_low, threshold_high, slope_low, slope_high (95 %, percentiles). nan where answers do not
-    determine a function (all the same, or a perfect step); `attrs["notes"]` names those.
+    determine a function (all the same, a perfect step, or as often yes at every level); `attrs["notes"]` names those.
     """
     by = names_of(by)
     if shape not in SHAPES:
@@ -83,12 +90,12 @@ def psychometric(
         counts = part.groupby("_x", sort=True)[["_k", "_n"]].sum()
         x, k, n = counts.index.to_numpy(float), counts["_k"].to_numpy(float), counts["_n"].to_numpy(float)
         row = dict(zip(by, names, strict=True)) | {"n": int(n.sum())}
-        if not _determined(x, k, n):
+        fitted = _fit(x, k, n, shape, guess, lapse) if _determined(x, k, n) else None
+        if fitted is None or fitted.flat(x):
             who = " × ".join(map(str, names)) or "the data"
             notes.append(f"No psychometric function can be fitted to {who}: the answers form no gradual rise or fall.")
             rows.append(row)
             continue
-        fitted = _fit(x, k, n, shape, guess, lapse)
         rows.append(
             row
             | _described(fitted, x, k, n, shape, lapse)
@@ -204,7 +211,8 @@ def _bootstrapped(
         k = rng.binomial(n.astype(int), p).astype(float)
         if _determined(x, k, n):
             one = _fit(x, k, n, shape, guess, lapse)
-            found.append((one.threshold, one.slope))
+            if not one.flat(x):
+                found.append((one.threshold, one.slope))
     if len(found) < samples / 2:
         return {}
     low, high = np.percentile(np.array(found), [2.5, 97.5], axis=0)

@@ -9,10 +9,10 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from random import Random
-from statistics import NormalDist
 from typing import Any
 
 from protocols.events import Event, KeyDown, KeyUp
+from protocols.limited_scale import latent_mean
 from protocols.parts import Level
 from protocols.setting import value_of
 from protocols.study import Simulation
@@ -126,29 +126,6 @@ BEHAVIOURS: Mapping[str, Callable[[Observer, Any, Mapping[str, Level], Random], 
     "rating": rate,
 }
 """Kind of task to what an observer does in one of its trials; the trial is of that task."""
-
-
-def latent_mean(mean: float, sd: float, low: float, high: float) -> float:
-    """Mean of a normal variable whose values, kept between low and high, have the mean `mean`; by bisection.
-
-    E[min(max(X, low), high)] = low Phi(a) + high (1 - Phi(b)) + m (Phi(b) - Phi(a)) + sd (phi(a) - phi(b)), with
-    a = (low - m) / sd and b = (high - m) / sd: the two-limit Tobit mean (Greene, Econometric Analysis, ch. 19).
-    """
-    if sd == 0.0 or not low < mean < high:
-        return mean
-    reach = high - low + 10.0 * sd
-    below, above = low - reach, high + reach
-    for _ in range(60):
-        middle = (below + above) / 2.0
-        below, above = (middle, above) if _kept_mean(middle, sd, low, high) < mean else (below, middle)
-    return (below + above) / 2.0
-
-
-def _kept_mean(mean: float, sd: float, low: float, high: float) -> float:
-    normal = NormalDist()
-    a, b = (low - mean) / sd, (high - mean) / sd
-    inside = normal.cdf(b) - normal.cdf(a)
-    return low * normal.cdf(a) + high * (1.0 - normal.cdf(b)) + mean * inside + sd * (normal.pdf(a) - normal.pdf(b))
 
 
 def _tapped(time: float, key: str) -> tuple[Event, Event]:

@@ -179,6 +179,9 @@ def _between(study: Study) -> Iterator[Mistake]:
     choices = _choices(study)
     for factor, levels in study.participants.between.items():
         where: Place = ("participants", "between", factor)
+        for i, level in enumerate(levels):
+            if level in levels[:i]:
+                yield Mistake((*where, i), f"level {level} stands twice; remove one")
         if factor in study.participants.assigned:
             if factor in taken_columns(study):
                 yield Mistake(where, "is the name of a column of the tables; rename the factor", on_key=True)

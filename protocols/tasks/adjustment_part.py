@@ -11,7 +11,7 @@ from pydantic import Field
 from protocols.mistakes.mistake import Mistake
 from protocols.mistakes.possible import Possible, Span
 from protocols.parts import Key, Level, Part, StepFrequency
-from protocols.setting import CONSTANT, StepFrequencySetting, kind_of, value_of
+from protocols.setting import StepFrequencySetting, leaves, value_of
 from protocols.stimulus import Stimulus, Walk
 from protocols.tasks import adjustment
 from protocols.tasks.adjustment import AdjustmentTask, AdjustmentTrial
@@ -117,16 +117,17 @@ class Adjustment(TaskPart):
         yield from super().mistakes(study)
 
     def _starts(self, study: Study) -> Iterator[Mistake]:
-        reach, start = self.range, self.start
+        """Starts out of reach: the setting itself, in its tables, and as levels of the design or of training trials."""
+        reach = self.range
         inside = f"outside the range {reach.minimum:g} to {reach.maximum:g} steps/min of task.range"
-        if kind_of(start) == CONSTANT:
-            if not reach.minimum <= float(value_of(start, {})) <= reach.maximum:
-                yield Mistake((*TASK, "start"), f"{start:g} is {inside}")
-        elif isinstance(start, str):
-            for i, level in enumerate(study.factors.get(start[1:], [])):
-                if isinstance(level, (int, float)) and not reach.minimum <= level <= reach.maximum:
-                    yield Mistake(("factors", start[1:], i), f"{level} is {inside}")
-            for i, trial in enumerate(study.practice):
-                given = trial.levels.get(start[1:])
-                if isinstance(given, (int, float)) and not reach.minimum <= given <= reach.maximum:
-                    yield Mistake(("practice", i, start[1:]), f"{given} is {inside}")
+        given = [*leaves(self.start, (*TASK, "start"), study.factors)]
+        taken = {str(place[1]) for _, place in given if place[0] == "factors"}
+        given += [
+            (level, ("practice", i, factor))
+            for i, trial in enumerate(study.practice)
+            for factor, level in trial.levels.items()
+            if factor in taken
+        ]
+        for start, place in given:
+            if isinstance(start, (int, float)) and not reach.minimum <= start <= reach.maximum:
+                yield Mistake(place, f"{start:g} is {inside}")

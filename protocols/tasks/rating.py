@@ -19,6 +19,9 @@ Direction = Literal["lower", "raise"]
 SWEEP = 0.25
 """Share of a continuous scale that the mark moves per second of holding a key."""
 
+DECIMALS = 9
+"""Of a point of a discrete scale: 3 steps of 0.1 are 0.3, as a condition of the study file writes it."""
+
 ON_SCALE = "scale:"
 """Beginning of the target of a click on the scale; the value follows."""
 
@@ -174,7 +177,7 @@ class RatingTrial:
         """The nearest value of the scale."""
         scale = self.task.scale
         if scale.step is not None:
-            mark = scale.minimum + round((mark - scale.minimum) / scale.step) * scale.step
+            mark = round(scale.minimum + round((mark - scale.minimum) / scale.step) * scale.step, DECIMALS)
         return min(max(mark, scale.minimum), scale.maximum)
 
     def _digit(self, key: str) -> float | None:

@@ -108,6 +108,19 @@ def test_what_cannot_be_simulated_is_said(study: dict[str, Any]) -> None:
     assert np.isfinite(power_by_simulation(study, experiments=5)["power"]).all()
 
 
+def test_levels_may_be_written_as_1_where_others_have_decimals(study: dict[str, Any]) -> None:
+    against = {"0.8": 0.006, "1": 0.006, "1.2": 0.006}
+    tests = [{"each": "speed", "against": against, "label": "a guess"}]
+    written = {**study, "factors": {**study["factors"], "speed": [0.8, 1, 1.2]}}
+    table = power_by_simulation({**written, "analysis": {**study["analysis"], "t_tests": tests}}, experiments=20)
+    assert list(table.loc[table["test"] == "t", "name"]) == ["speed 0.8", "speed 1", "speed 1.2"]
+
+
+def test_no_participants_are_not_the_planned_ones(study: dict[str, Any]) -> None:
+    with pytest.raises(AnalysisError, match="0 participants are too few"):
+        power_by_simulation(study, experiments=5, participants=0)
+
+
 @pytest.mark.slow
 def test_p_values_are_uniform_when_every_observer_has_one_walk_ratio(study: dict[str, Any]) -> None:
     from scipy import stats

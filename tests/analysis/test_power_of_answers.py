@@ -57,6 +57,22 @@ def test_ratings_stay_on_the_points_of_their_scale():
     assert free.std() == pytest.approx(0.5, rel=0.05)  # sqrt(0.4^2 + 0.3^2)
 
 
+def test_ratings_have_the_means_of_the_study_though_the_scale_cuts_them_off():
+    study = loaded("fourier_naturalness")
+    wanted = list(study["simulation"]["rating"]["rating"]["$pair"].values())
+    model = experiment_model(study, 37)
+    found = model.observers.values(np.random.default_rng(5), 20_000).mean(axis=0).reshape(-1, len(wanted)).mean(axis=0)
+    # s.d. of a mean of 20 000 people: below 0.008; rounding to whole points moves a mean by 0.02 at most
+    assert found == pytest.approx(wanted, abs=0.04)
+
+
+def test_a_rating_that_the_study_does_not_say_is_the_middle_of_the_scale():
+    study = loaded("fourier_naturalness")
+    rating = {name: value for name, value in study["simulation"]["rating"].items() if name != "rating"}
+    model = experiment_model({**study, "simulation": {"rating": rating}}, 37)
+    assert set(model.observers.rating) == {2.0}
+
+
 @pytest.mark.parametrize(
     ("study", "effects"),
     [("speed_editing", {"method", "direction"}), ("fourier_naturalness", {"style"}), ("crowd_variety", set())],

@@ -201,6 +201,29 @@ def test_a_perfect_step_has_no_function() -> None:
     assert "no gradual rise" in mine.attrs["notes"][0] or "form no gradual" in mine.attrs["notes"][0]
 
 
+@pytest.mark.parametrize("yes", [4, 5])
+def test_somebody_who_says_yes_as_often_at_every_level_has_no_threshold(yes: int) -> None:
+    data = pd.DataFrame({"x": [1, 2, 3], "k": [yes] * 3, "n": [10] * 3})
+    table = psychometric(data, "x", "k", "n")
+    assert table["threshold"].isna().all()
+    assert "no gradual rise or fall" in table.attrs["notes"][0]
+
+
+def test_samples_without_a_slope_do_not_stop_the_limits_of_somebody_who_nearly_guesses() -> None:
+    data = pd.DataFrame({"x": [1, 2, 3], "k": [5, 5, 6], "n": [10] * 3})
+    row = psychometric(data, "x", "k", "n", bootstrap=500).iloc[0]
+    assert row["slope_low"] < row["slope"] < row["slope_high"]
+
+
+@pytest.mark.parametrize(
+    ("effect", "measures", "groups", "needs"),
+    [("between", 1, 1, "groups"), ("within", 1, 2, "measures"), ("interaction", 3, 1, "groups")],
+)
+def test_what_an_effect_lacks_is_named(effect: str, measures: int, groups: int, needs: str) -> None:
+    with pytest.raises(AnalysisError, match=f"A {effect} effect needs two or more {needs}"):
+        power_rm_anova(effect=effect, measures=measures, groups=groups, f=0.25, n=20)
+
+
 def test_wilson_limits_of_newcombe_1998() -> None:
     # Newcombe 1998, table I: 81/263 Wilson .2553-.3662, exact .2527-.3676; 0/20 Wilson 0-.1611.
     data = pd.DataFrame({"k": [81, 0], "n": [263, 20], "case": ["a", "b"]})

@@ -12,8 +12,8 @@ import pytest
 
 from analysis.planned_analysis import analyse
 from experiment_app.checking.check import checked_study
-from experiment_app.simulated.behaviour import latent_mean
 from experiment_app.simulated.simulate import simulate
+from protocols.limited_scale import latent_mean
 from protocols.study_file import read_study
 
 

@@ -34,6 +34,16 @@ def test_a_digit_marks_its_point_and_enter_confirms():
     assert trial.looked == 4.0
 
 
+def test_points_of_a_fine_scale_are_the_numbers_a_study_file_writes():
+    trial = started(Scale(0.0, 1.0, 0.1, "not at all", "completely"))
+    marks = []
+    for i in range(11):
+        trial = played(trial, KeyDown(1.0 + i, "right"))
+        marks.append(trial.mark)
+    assert marks == [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
+    assert played(trial, Clicked(20.0, "scale:0.7")).mark == 0.7
+
+
 def test_arrows_move_the_mark_from_an_end_and_stop_at_the_other():
     up = [KeyDown(float(i), "right") for i in range(1, 4)]
     assert played(started(), *up).mark == 2.0
