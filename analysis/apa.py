@@ -57,7 +57,7 @@ def p_value(p: float) -> str:
     """'p < .001', 'p = .045', or that there is none."""
     if p is None or not math.isfinite(p):
         return "no p value"
-    return "p < .001" if p < 0.0005 or p < 0.001 else f"p = {share(p, 3)}"
+    return "p < .001" if p < 0.001 else f"p = {share(p, 3)}"
 
 
 def share(value: float, decimals: int = 2) -> str:

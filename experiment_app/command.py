@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import logging
 import sys
+from io import TextIOWrapper
 
 from cyclopts import App
 
@@ -38,7 +39,12 @@ for command in (
 
 
 def main() -> None:
-    """Runs the command of sys.argv and exits."""
+    """Runs the command of sys.argv and exits.
+
+    A sign that the terminal or the file cannot hold, as a histogram's bar in Windows' cp1252, becomes a question mark.
+    """
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
     sys.exit(run(sys.argv[1:]))
 
 

@@ -116,10 +116,10 @@ def walks_in(folder: Path, notes: list[str], progress: ShowProgress = unseen) ->
         try:
             walks.append(PersonsWalk(_person(path.stem), extract_cycle(read_clip(path))))
         except (GaitError, MotionFileError) as error:
-            left_out.append(path.name)
-            first = str(error)
+            left_out.append((path.name, str(error)))
     if left_out:
-        notes.append(f"{len(left_out)} files of {folder} hold no usable walk ({', '.join(left_out[:5])}): {first}")
+        names, (_, first) = ", ".join(name for name, _ in left_out[:5]), left_out[0]
+        notes.append(f"{len(left_out)} files of {folder} hold no usable walk ({names}); the first: {first}")
     if not walks:
         raise UsageError(f"{folder}: no motion file in it holds a walk.")
     return walks

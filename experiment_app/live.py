@@ -227,10 +227,11 @@ def _group(opened: OpenRun) -> str:
 def preparing(plan: Plan, say: Callable[[str], None]) -> Iterator[None]:
     """Makes every walker the plan will show while the participant reads, so that nothing is loaded between trials.
 
-    Crowds take some seconds and are made before. What cannot be made is refused before a run opens (`check_names`).
+    Whoever is shown first is made first, so that a participant who reads fast need not wait. Crowds take some seconds
+    and are made before. What cannot be made is refused before a run opens (`check_names`).
     """
     steps = [step for step in plan.steps if isinstance(step, TrialStep)]
-    walks = {walk for step in steps for walk in walks_of(plan.study, step).values()}
+    walks = list(dict.fromkeys(walk for step in steps for walk in walks_of(plan.study, step).values()))
     crowds = [walk.crowd for walk in walks if walk.crowd is not None]
     if crowds:
         say("Making the walks of the crowds, which takes some seconds.")

@@ -201,12 +201,19 @@ class Scene:
     @property
     def visible(self) -> bool:
         """Whether there is more to see than a page: somebody, or a place the camera stands at."""
-        return (
-            bool(self.walkers)
-            or self.crowd is not None
-            or not self.camera.follows
-            or (self.beside is not None and self.beside.visible)
-        )
+        here = self.somebody or not self.camera.follows
+        return here or (self.beside is not None and self.beside.visible)
+
+    @property
+    def somebody(self) -> bool:
+        """Whether anybody walks: a walker or a crowd, here or in the scene beside."""
+        here = bool(self.walkers) or self.crowd is not None
+        return here or (self.beside is not None and self.beside.somebody)
+
+    @property
+    def clickable(self) -> bool:
+        """Whether there is something to click: a field, an option, a button or a scale."""
+        return self.page is not None and bool(self.page.rows)
 
     @property
     def everyone(self) -> tuple[Walker, ...]:

@@ -32,9 +32,8 @@ def cast(actor: str, body: str) -> tuple[Actor, Body]:
     """The actor, and the body at the actor's height that wears the motion; body "" is the actor's own.
 
     matched and mismatched are the shipped bodies of the actor's sex and of the other, own_build is the matched one in
-    the actor's build. A figure without a body
-    (point_light, stick_figure, ...) moves on the joints of the actor's own body. Raises ActorError or BodyError for a
-    name that is not known.
+    the actor's build. A figure without a body (point_light, stick_figure, ...) moves on the joints of the actor's own
+    body. Raises ActorError or BodyError for a name that is not known.
     """
     if not body or body in FIGURES:
         chosen = load_actor(actor)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from string import ascii_lowercase
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,7 +37,7 @@ def regression_figure(figure: FigurePlan, results: PlannedResults) -> DrawnFigur
     groups = plan.groups[figure.panels].group_of if figure.panels is not None else {}
     group = [groups.get(level, "") for level in cases[of]]
     drawing, axes = panels(len(names), 3.1, 3.9)
-    for letter, axis, name in zip("abcdefghij", axes, names, strict=False):
+    for letter, axis, name in zip(ascii_lowercase, axes, names, strict=False):
         x, y = cases[name].to_numpy(dtype=float), cases[plan.measure].to_numpy(dtype=float)
         ends = np.array([x.min(), x.max()])
         axis.plot(ends, y.mean() + slopes.loc[name, "estimate"] * (ends - x.mean()), color="#718096", linewidth=1.4)

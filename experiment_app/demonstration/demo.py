@@ -22,6 +22,7 @@ from experiment_app.simulated.observer import SimulatedParticipant, draw_observe
 from experiment_app.simulated.simulate import simulate
 from experiment_app.terminal import ShowProgress
 from experiment_app.windows.offscreen import OffscreenWindow
+from protocols.orders.assignment import group_of
 from protocols.orders.design import default_seed
 from protocols.plan import TrialStep
 from protocols.record import Record
@@ -155,7 +156,7 @@ def film_trial(study: StudyFile, folder: Path) -> None:
     """A film and a strip of the first seconds of a simulated trial at 25 frames/s, drawn off-screen."""
     from protocols.plan import make_plan
 
-    plan = make_plan(study.study, SEED, 1)
+    plan = make_plan(study.study, SEED, 1, group_of(study.study, 1))
     trial = next(step for step in plan.steps if isinstance(step, TrialStep) and not step.trial.practice)
     plan = replace(plan, steps=(trial,))
     person = SimulatedParticipant(study.study, draw_observer(study.study, 1, SEED), SEED)

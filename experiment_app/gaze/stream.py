@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
+from math import ceil, isfinite
 from typing import Any
 
 from experiment_app.errors import UsageError
-from experiment_app.gaze.samples import GazeSample
+from experiment_app.gaze.samples import KEPT, GazeSample
 from experiment_app.markers.lsl import import_pylsl
 from protocols.gaze import GazeSettings
 
@@ -15,6 +15,9 @@ KNOWN_LABELS = (("x", "y"), ("norm_pos_x", "norm_pos_y"), ("gaze_x", "gaze_y"), 
 """Labels of the two channels in common streams, tried in this order when the study file names none."""
 
 OnPicture = Callable[[float, float], tuple[float, float]]
+
+KEPT_SECONDS = ceil(KEPT)
+"""Of samples that wait for the next poll, s; during a page nobody asks for them, and older ones are let go anyway."""
 
 FINDING_TIME = 5.0
 """s to wait for the stream."""
@@ -37,7 +40,7 @@ class GazeStream:
                 f"no stream of type {settings.stream_type} was found within {FINDING_TIME:g} s; start the eye "
                 "tracker's Lab Streaming Layer output on this network, or take `gaze:` out of the study file."
             )
-        self._inlet = pylsl.StreamInlet(found[0], max_buflen=60)
+        self._inlet = pylsl.StreamInlet(found[0], max_buflen=KEPT_SECONDS)
         info = self._inlet.info(FINDING_TIME)
         self.name = str(info.name())
         self._settings, self._display, self._on_picture, self._offset = settings, display, on_picture, offset
@@ -46,12 +49,14 @@ class GazeStream:
         self._inlet.open_stream(FINDING_TIME)
 
     def poll(self) -> list[GazeSample]:
-        """The samples that have come since the last time, oldest first; never waits."""
-        values, times = self._inlet.pull_chunk(0.0)
-        if not times:
-            return []
-        correction = float(self._inlet.time_correction(0.0)) - self._offset
-        samples = (self._sample(row, time + correction) for row, time in zip(values, times, strict=True))
+        """The samples that have come since the last time, oldest first; never waits.
+
+        A pull gives so many at most, and on the first frame after a page there are more.
+        """
+        samples: list[GazeSample | None] = []
+        while (pulled := self._inlet.pull_chunk(0.0))[1]:
+            correction = float(self._inlet.time_correction(0.0)) - self._offset
+            samples += [self._sample(row, time + correction) for row, time in zip(*pulled, strict=True)]
         return [sample for sample in samples if sample is not None]
 
     def close(self) -> None:
@@ -61,7 +66,7 @@ class GazeStream:
     def _sample(self, row: Sequence[float], time: float) -> GazeSample | None:
         x, y = float(row[self._x]), float(row[self._y])
         trusted = self._confidence is None or float(row[self._confidence]) >= self._settings.least_confidence
-        if not (trusted and math.isfinite(x) and math.isfinite(y)):
+        if not (trusted and isfinite(x) and isfinite(y)):
             return None
         if self._settings.unit == "pixels":
             x, y = x / self._display[0], y / self._display[1]

@@ -17,6 +17,7 @@ from experiment_app.scene import Scene
 from experiment_app.staging import view_scene
 from protocols.events import Shown
 from protocols.orders.design import Trial
+from protocols.parts import Level
 from protocols.plan import Plan, TrialStep
 from protocols.study import Study
 
@@ -47,23 +48,29 @@ def save_film(frames: Sequence[Pixels], frame_rate: float, path: Path) -> None:
 
 
 def condition_of(study: Study, given: Sequence[str]) -> Trial:
-    """The trial of a condition written as factor=level; a factor that is not given takes its first level."""
-    levels = {factor: choices[0] for factor, choices in study.factors.items()}
+    """The trial of a condition written as factor=level; a factor that is not given takes its first level.
+
+    Factors that the program assigns to participants may be given like those of the design.
+    """
+    group = {name: study.participants.between[name] for name in study.participants.assigned}
+    known: dict[str, Sequence[Level]] = {**study.factors, **group}
+    levels = {factor: choices[0] for factor, choices in known.items()}
     for text in given:
         factor, equals, wanted = text.partition("=")
         if not equals or factor not in levels:
             raise UsageError(f"--condition {text}: write factor=level; the factors are {', '.join(levels)}.")
-        found = [level for level in study.factors[factor] if _same(level, wanted)]
+        found = [level for level in known[factor] if _same(level, wanted)]
         if not found:
-            known = ", ".join(map(str, study.factors[factor]))
-            raise UsageError(f"--condition {text}: the levels of {factor} are {known}.")
+            listed = ", ".join(map(str, known[factor]))
+            raise UsageError(f"--condition {text}: the levels of {factor} are {listed}.")
         levels[factor] = found[0]
-    return Trial(1, 1, 1, levels)
+    own = {factor: levels[factor] for factor in study.factors}
+    return Trial(1, 1, 1, own, group={name: str(levels[name]) for name in group})
 
 
 def walking(study: Study, trial: Trial, seconds: float, lod: int | None = None) -> Scene:
     """The scene of a condition so many seconds after its onset, nothing pressed; alternatives as in the file."""
-    order = tuple(study.task.walks(study.stimulus, trial.levels))
+    order = tuple(study.task.walks(study.stimulus, trial.values))
     begun = Plan(study, (), study.task.keys_for(1), 1).begin(TrialStep(trial, order))
     scene = view_scene(study, begun.handle(Shown(0.0)).advance(seconds).view)
     return scene if lod is None else replace(scene, lod=lod)

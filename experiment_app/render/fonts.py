@@ -119,7 +119,7 @@ def _covers(face: Face, code: int) -> bool:
 def _ranges(face: Face) -> tuple[Codes, Codes]:
     """First and last code points, (N,) each and sorted, of the ranges a font has outlines for.
 
-    None for a file that cannot be read as a font, and for bitmap and colour fonts.
+    NOTHING for a file that cannot be read as a font, and for bitmap and colour fonts.
     """
     try:
         with open(face.path, "rb") as file:
@@ -226,5 +226,5 @@ def _font_folders() -> tuple[Path, ...]:
         return (Path(os.environ.get("WINDIR", "C:/Windows")) / "Fonts", local / "Microsoft" / "Windows" / "Fonts")
     if sys.platform == "darwin":
         return (Path("/System/Library/Fonts"), Path("/Library/Fonts"), home / "Library" / "Fonts")
-    shared = os.environ.get("XDG_DATA_DIRS", "/usr/local/share:/usr/share").split(":")
+    shared = (os.environ.get("XDG_DATA_DIRS") or "/usr/local/share:/usr/share").split(":")
     return (home / ".local" / "share" / "fonts", home / ".fonts", *(Path(d) / "fonts" for d in shared if d))

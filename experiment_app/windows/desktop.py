@@ -47,7 +47,7 @@ MOUSE_KEYS = {
     glfw.MOUSE_BUTTON_RIGHT: "right",
     glfw.MOUSE_BUTTON_MIDDLE: "enter",
 }
-"""What the mouse's buttons are in trials, where there is nothing to click."""
+"""What the mouse's buttons are where there is nothing to click, as in trials whose question keys answer."""
 
 Device = Literal["mouse", "gamepad"]
 
@@ -243,8 +243,7 @@ class DesktopWindow:
         return intervals, replace(measured(reported, intervals), refresh=times[-1] - self.origin)
 
     def _set_cursor(self, scene: Scene) -> None:
-        clickable = scene.page is not None and bool(scene.page.rows)
-        mode = glfw.CURSOR_NORMAL if clickable else glfw.CURSOR_HIDDEN
+        mode = glfw.CURSOR_NORMAL if scene.clickable else glfw.CURSOR_HIDDEN
         if glfw.get_input_mode(self._handle, glfw.CURSOR) != mode:
             glfw.set_input_mode(self._handle, glfw.CURSOR, mode)
 
@@ -292,7 +291,7 @@ class DesktopWindow:
 
         def on_button(_: Any, button: int, action: int, __: int) -> None:
             now = self.now()
-            if self._scene.page is not None:
+            if self._scene.clickable:
                 if button == glfw.MOUSE_BUTTON_LEFT and action == glfw.PRESS:
                     self._clicks.append((now, *glfw.get_cursor_pos(self._handle)))
             elif self._mouse and button in MOUSE_KEYS:

@@ -1,4 +1,4 @@
-"""A square in a corner of the picture for a photodiode: white while a walker is to be seen, else black."""
+"""A square in a corner of the picture for a photodiode: white while somebody is to be seen walking, else black."""
 
 from __future__ import annotations
 
@@ -27,5 +27,5 @@ class Patch:
         side = max(round(SIDE * height), 8)
         left = 0 if self.corner.endswith("left") else width - side
         bottom = 0 if self.corner.startswith("bottom") else height - side
-        level = float(bool(scene.everyone))
+        level = float(scene.somebody)
         screen.clear(level, level, level, viewport=(left, bottom, side, side))

@@ -36,6 +36,18 @@ def test_every_command_is_in_the_documentation(name):
     assert any(f"gaitlab {name}" in page.read_text(encoding="utf-8") for page in pages)
 
 
+def test_signs_that_the_output_cannot_hold_end_no_command(tmp_path):
+    """Windows writes to files and pipes in cp1252, which has no Japanese."""
+    study = tmp_path / "s.yaml"
+    study.write_text(changed(("title: ", "title: 歩く, ")), encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "experiment_app", "check", str(study)],
+        capture_output=True, env={**os.environ, "PYTHONIOENCODING": "cp1252"},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert b"s.yaml: ??, " in done.stdout
+
+
 def test_the_version_is_the_projects():
     import tomllib
 

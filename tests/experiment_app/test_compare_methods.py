@@ -8,6 +8,8 @@ import pytest
 from analysis.errors import AnalysisError
 from analysis.walk_methods.comparison import RebuildingError, published_order, rebuilding_anova
 from experiment_app.command import run
+from experiment_app.comparing_methods import walks_in
+from experiment_app.errors import UsageError
 
 CMU = Path(__file__).parents[2].parent / "shared" / "mocap" / "bvh" / "cmu"
 
@@ -81,3 +83,14 @@ def test_bad_input_is_a_sentence(tmp_path, monkeypatch, capfd, words, sentence):
     monkeypatch.chdir(tmp_path)
     assert run(["compare-methods", *words]) == 2
     assert sentence in capfd.readouterr().err
+
+
+def test_of_files_without_a_walk_the_reason_of_the_first_is_told(tmp_path):
+    (tmp_path / "a.bvh").write_bytes(b"no motion")
+    (tmp_path / "b.c3d").write_bytes(b"nor here")
+    alone: list[str] = []
+    for place in (tmp_path / "a.bvh", tmp_path):
+        with pytest.raises(UsageError):
+            walks_in(place, alone)
+    of_one, of_both = (note.rpartition("the first: ")[2] for note in alone)
+    assert of_both == of_one

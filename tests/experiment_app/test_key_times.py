@@ -6,15 +6,18 @@ import subprocess
 import sys
 import time
 
+import glfw
 import pytest
 
-from experiment_app.scene import Scene, Walker
+from experiment_app.pictures.film import condition_of, walking
+from experiment_app.scene import Camera, Crowd, Scene, Walker
 from experiment_app.timing.injected_keys import KEY, KEYSYM, NOBODY, matched, measure_keys
 from experiment_app.timing.key_injector import Injector, can_inject
 from experiment_app.windows.desktop import DesktopWindow
 from experiment_app.windows.offscreen import offscreen_context
 from experiment_app.windows.patch import Patch
 from protocols.events import Event, FocusLost, KeyDown, KeyUp
+from protocols.study_file import read_study
 from tests.benchmarks.measuring import machine
 
 pytestmark = [
@@ -114,14 +117,27 @@ def take_the_focus() -> None:
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
-def test_the_square_for_a_photodiode_is_white_with_a_walker_and_black_without():
+def test_the_square_for_a_photodiode_is_white_with_a_walker_or_a_crowd_and_black_without():
+    crowd = Scene((), Camera("elevated", 34.0, 10.0, 40.0, 180.0), "street", crowd=Crowd(2))
     with small(patch=Patch("bottom-right")) as window:
         levels = []
-        for scene in (Scene((Walker("F1", 1.2, 105.0, 0.25),)), Scene()):
+        for scene in (Scene((Walker("F1", 1.2, 105.0, 0.25),)), Scene(), crowd):
             window.poll(NOBODY)
             window.show(scene)
             levels.append(corner_level())
-    assert levels == [255, 0]
+    assert levels == [255, 0, 255]
+
+
+@pytest.mark.parametrize(("study", "answers"), [("poulaine_reconstruction", ["left"]), ("fourier_naturalness", [])])
+def test_the_mouses_buttons_answer_where_a_question_has_nothing_to_click(study, answers):
+    asked = read_study(study).study
+    with small(devices=("mouse",)) as window:
+        window.poll(NOBODY)
+        window.show(walking(asked, condition_of(asked, []), 1.0))
+        on_button = window._callbacks[2]
+        on_button(None, glfw.MOUSE_BUTTON_LEFT, glfw.PRESS, 0)
+        _, events = window.poll(NOBODY)
+    assert [event.key for event in events if isinstance(event, KeyDown)] == answers
 
 
 def corner_level() -> int:

@@ -117,6 +117,35 @@ def test_gaze_comes_by_label_in_any_order_without_blinks_and_on_the_clock_of_the
     assert (x, y) == pytest.approx((0.75, 0.75))  # a quarter from the bottom is three quarters from the top
 
 
+AFTER_A_PAGE = """
+import json, time, pylsl
+from experiment_app.gaze.stream import GazeStream
+from protocols.gaze import GazeSettings
+
+info = pylsl.StreamInfo("tracker", "Gaze", 2, 1000.0, "float32", "tracker-2")
+channels = info.desc().append_child("channels")
+for label in ("x", "y"):
+    channels.append_child("channel").append_child_value("label", label)
+outlet = pylsl.StreamOutlet(info)
+stream = GazeStream(GazeSettings(), (1920, 1080), lambda x, y: (x, y), 0.0)
+outlet.wait_for_consumers(5.0)
+begun = pylsl.local_clock()
+for number in range(1800):
+    outlet.push_sample([number / 1800.0, 0.5], begun + number / 1000.0)
+time.sleep(0.5)
+first, second = stream.poll(), stream.poll()
+stream.close()
+print(json.dumps({"first": len(first), "last": first[-1].x, "second": len(second)}))
+"""
+
+
+def test_what_came_during_a_page_does_not_hold_up_the_gaze_of_the_first_frames_after_it(tmp_path):
+    got = run_alone(AFTER_A_PAGE, tmp_path)
+    assert got["first"] > 1024  # what pylsl gives at a time
+    assert got["last"] == pytest.approx(1799.0 / 1800.0)
+    assert got["second"] == 0
+
+
 def test_a_missing_stream_is_a_sentence(tmp_path):
     script = (
         "import json\n"

@@ -3,9 +3,12 @@
 import numpy as np
 import pytest
 
+from experiment_app import live
 from experiment_app.scene import Scene, Walker
 from experiment_app.walkers import drawn_walkers, measured_gait, walk_of
+from protocols.plan import TrialStep, make_plan, walks_of
 from stimuli.methods.recipe import Making
+from tests.protocols.studies import study
 
 
 def scene(making, speed=1.06, body="", phase=0.3, actor="F2"):
@@ -43,3 +46,15 @@ def test_a_made_walk_can_be_shown_as_a_point_light_and_on_another_body():
     assert points.lines is not None
     (worn,) = drawn_walkers(scene(Making("poulaine"), body="man"))
     assert worn.body.name == "man"
+
+
+def test_who_is_shown_first_is_made_first(monkeypatch):
+    made: list[tuple[str, float]] = []
+    monkeypatch.setattr(live, "cast", lambda actor, body: None)
+    monkeypatch.setattr(live, "own_step_frequency", lambda actor, body, making, speed: made.append((actor, speed)))
+    plan = make_plan(study(), 1, 1)
+    with live.preparing(plan, print):
+        pass
+    steps = [step for step in plan.steps if isinstance(step, TrialStep)]
+    shown = [(walk.actor, walk.speed) for step in steps for walk in walks_of(plan.study, step).values()]
+    assert made == list(dict.fromkeys(shown))

@@ -8,9 +8,11 @@ import re
 import pytest
 
 from experiment_app.checking.check import checked_study, expected_minutes
+from experiment_app.demonstration.demo import film_trial
 from experiment_app.demonstration.short_study import short_study
 from protocols.orders.design import make_trials
 from protocols.study_file import shipped_studies
+from tests.protocols.studies import edited
 
 
 @pytest.mark.parametrize("name", shipped_studies())
@@ -41,3 +43,11 @@ def test_a_short_study_plans_no_figure_that_so_few_trials_and_levels_cannot_fill
     kinds = {figure.kind for part in (analysis, *analysis.also) for figure in part.figures}
     assert kinds
     assert not kinds & {"order", "regression"}
+
+
+def test_a_short_study_of_which_the_program_assigns_something_is_filmed(tmp_path):
+    bodies = "body: {$viewing: {screen: matched, headset: mismatched}}"
+    text = edited("walk_ratio_actors", ("body: $character", bodies)).text
+    (tmp_path / "s.yaml").write_text(text, encoding="utf-8")
+    film_trial(short_study(str(tmp_path / "s.yaml")), tmp_path)
+    assert (tmp_path / "trial.webp").stat().st_size

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from experiment_app.render.fonts import can_shape, main_face, missing_glyphs, needs_shaping
+from experiment_app.render.fonts import _font_folders, can_shape, main_face, missing_glyphs, needs_shaping
 from experiment_app.render.text import (
     break_lines,
     clean,
@@ -127,3 +130,10 @@ def test_breaking_loses_only_spaces(text, width):
     lines = break_lines(clean(text), 20, False, width)
     assert "".join(lines).replace(" ", "") == text.replace(" ", "")
     assert all(width_of(line, 20) <= width for line in lines)
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the folders of Linux")
+def test_an_empty_list_of_data_folders_is_no_list(monkeypatch):
+    """As the XDG Base Directory Specification has it."""
+    monkeypatch.setenv("XDG_DATA_DIRS", "")
+    assert Path("/usr/share/fonts") in _font_folders()

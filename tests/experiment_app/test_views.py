@@ -8,6 +8,7 @@ import moderngl
 import numpy as np
 import pytest
 
+from experiment_app.errors import UsageError
 from experiment_app.pictures.film import condition_of, walking
 from experiment_app.render.cameras import AIM, HEADINGS, place_camera
 from experiment_app.render.renderer import Renderer
@@ -20,7 +21,7 @@ from protocols.plan import TrialStep, make_plan
 from protocols.session import begin, handle
 from protocols.study_file import parse_study
 from tests.experiment_app.drawing import picture
-from tests.protocols.studies import changed
+from tests.protocols.studies import changed, edited
 
 SIZE = (320, 180)
 WALKER = Walker("F1", 1.2, 105.0, 0.3, distance=4.7)
@@ -95,6 +96,15 @@ def test_the_study_files_look_reaches_the_scene() -> None:
         7,
     )
     assert walking(study, condition_of(study, []), 1.0, lod=2).lod == 2
+
+
+def test_what_the_program_assigns_is_filmed_like_a_factor_of_the_design() -> None:
+    bodies = "body: {$viewing: {screen: matched, headset: mismatched}}"
+    study = edited("walk_ratio_actors", ("body: $character", bodies)).study
+    shown = [walking(study, condition_of(study, given), 1.0) for given in ([], ["viewing=headset"])]
+    assert [scene.walkers[0].body for scene in shown] == ["matched", "mismatched"]
+    with pytest.raises(UsageError, match="the levels of viewing are screen, headset"):
+        condition_of(study, ["viewing=cinema"])
 
 
 def test_the_street_is_there_when_nobody_is(context: moderngl.Context, renderer: Renderer) -> None:
