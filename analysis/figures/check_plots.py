@@ -24,8 +24,9 @@ def check_quantiles(results: PlannedResults) -> dict[str, dict[str, pd.DataFrame
     means = results.means
     if means is not None:
         _keep(found, "anova", {"": lambda: residual_quantiles(means)})
-    for factor in dict.fromkeys(results.ttests["factor"]) if len(results.ttests) else ():
-        where = next((test.where for test in results.plan.t_tests if test.each == factor), None)
+    run = set(zip(results.ttests["factor"], results.ttests["reference"], strict=True))
+    for factor in dict.fromkeys(results.ttests["factor"]):
+        where = next(test.where for test in results.plan.t_tests if test.each == factor and (factor, test.label) in run)
         used = results.used if where is None else results.used[matching(results.used, where)]
         column = labels(used, factor, results.plan.levels[factor])
         persons = used.assign(_level=np.array(column.levels)[column.codes])

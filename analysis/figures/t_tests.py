@@ -22,7 +22,7 @@ from analysis.figures.drawing import (
 from analysis.planned.plan_parts import FigurePlan
 from analysis.planned.results import ALPHA, PlannedResults
 from analysis.recorded.exclusions import matching
-from analysis.statistics.columns import labels
+from analysis.statistics.columns import labels, numeric_label
 
 LEGEND = 5.0  # inches that the legend above the panels needs
 
@@ -63,7 +63,8 @@ def t_tests_figure(figure: FigurePlan, results: PlannedResults) -> DrawnFigure:
 
 def _persons(used: pd.DataFrame, each: str, order: tuple[str, ...], measure: str) -> pd.Series:
     """Mean of every level (first index) and participant."""
-    column = labels(used, each, [level for level in order if level in set(map(str, used[each]))] or order)
+    there = set(used[each].map(numeric_label))
+    column = labels(used, each, [level for level in order if numeric_label(level) in there])
     named = used.assign(_level=np.array(column.levels)[column.codes])
     return named.groupby(["_level", "participant"])[measure].mean()
 

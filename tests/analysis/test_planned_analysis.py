@@ -6,6 +6,7 @@ import csv
 import math
 import re
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 import pytest
@@ -346,3 +347,34 @@ def test_a_plan_made_later_is_followed_on_request_and_the_report_says_what_diffe
     assert not (tmp_path / "out" / "plan.yaml").exists()
     with pytest.raises(AnalysisError, match="that is the study other, and these are runs of walk_ratio"):
         analyse(folder, tmp_path / "out", plan_text=later.replace("study: walk_ratio", "study: other"))
+
+
+def test_levels_with_unlike_decimals_are_drawn_beside_what_they_were_tested_against(tmp_path: Path) -> None:
+    speeds = study_text().replace("speed: [0.8, 1.0, 1.2] ", "speed: [0.8, 1.0, 1.25] ")
+    text = with_tests(speeds, "{each: speed, against: 0.006, label: a guess}")
+    text = text.replace("  figures:\n", "  figures:\n    - {kind: t_tests, reference: a guess}\n")
+    data = write_study(tmp_path / "walk_ratio", 8, text)
+    for journal in data.rglob("journal.jsonl"):
+        rewrite(journal, lambda records: [_faster(record) for record in records])
+    outcome = analyse(data, tmp_path / "out")
+    assert "t_tests_speed.png" in {path.name for path in outcome.paths}
+    assert not any("not drawn" in warning for warning in outcome.warnings)
+
+
+def _faster(record: dict[str, Any]) -> dict[str, Any]:
+    """The record of a trial at 1.2 m/s as one at 1.25 m/s."""
+    if record.get("factors", {}).get("speed") != 1.2:
+        return record
+    return {**record, "factors": {**record["factors"], "speed": 1.25}}
+
+
+def test_a_t_test_that_cannot_be_run_does_not_keep_another_of_the_same_factor_from_its_report(tmp_path: Path) -> None:
+    text = with_tests(study_text(), "{each: actor, against: 0.006, label: a guess, where: actor == F1}")
+    outcome = analyse(write_study(tmp_path / "walk_ratio", 8, text), tmp_path / "out")
+    assert any("t tests against the a guess cannot be run" in warning for warning in outcome.warnings)
+    assert len(pd.read_csv(tmp_path / "out" / "ttests.csv")) == 4
+
+
+def with_tests(text: str, test: str) -> str:
+    """The study with one more t test before its own."""
+    return text.replace("    - each: actor\n      against:", f"    - {test}\n    - each: actor\n      against:", 1)
