@@ -1,6 +1,6 @@
 """The journal of a run: an append-only file written by its own thread, so that the disk never holds up a frame.
 
-`write` queues; `saved` says how many records are safe. A trial's record is followed by fsync, all else is
+`write` queues; `saved` says how many records are safe. A trial's record is forced to the disk, all else is
 flushed to the operating system at once, which survives the death of this process.
 """
 
@@ -15,12 +15,13 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import IO
 
+from experiment_app.durable import force_file, force_folder
 from experiment_app.errors import RunError, UsageError
 from experiment_app.run_folder import Run, journal_lines, journal_text, lock
 from protocols.record import Ended, Header, Record, TrialRecord, checksum_of, encode_line
 
 DURABLE = (Header, TrialRecord, Ended)
-"""Records after which the file is forced to the disk (fsync)."""
+"""Records after which the file is forced to the disk."""
 
 
 class Journal:
@@ -96,7 +97,7 @@ class Journal:
                 try:
                     self._append(record)
                     if isinstance(record, DURABLE):
-                        os.fsync(self._file.fileno())
+                        force_file(self._file.fileno())
                 except Exception as error:  # whatever it is, the loop must learn of it and not wait for ever
                     self._failure = error
                     self._last_words(error)
@@ -113,7 +114,7 @@ class Journal:
             return
         with suppress(Exception):
             self._append(Ended(self._time, f"not written: {_reason(failure)}"[:120]))
-            os.fsync(self._file.fileno())
+            force_file(self._file.fileno())
 
     def _append(self, record: Record) -> None:
         line = encode_line(record, self._last)
@@ -147,7 +148,7 @@ def create_journal(run: Run, header: Header) -> Journal:
     try:
         journal.write([header])
         journal.wait()
-        _sync_folder(run.folder)
+        force_folder(run.folder)
     except RunError as error:
         with suppress(RunError):
             journal.close()
@@ -226,20 +227,9 @@ def _set_aside(file: IO[bytes], folder: Path, begin: int) -> None:
         with open(name, "xb") as copy:
             copy.write(file.read())
             copy.flush()
-            os.fsync(copy.fileno())
+            force_file(copy.fileno())
     except OSError:
         name.unlink(missing_ok=True)
         raise
     file.truncate(begin)
     file.seek(begin)
-
-
-def _sync_folder(folder: Path) -> None:
-    """Makes the journal's name itself survive a power cut (POSIX; Windows needs and allows no such thing)."""
-    if os.name == "nt":  # pragma: no cover - exercised on Windows only
-        return
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

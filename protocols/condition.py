@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 import re
 from collections.abc import Callable, Mapping
@@ -33,7 +34,7 @@ class Condition:
         """
         left, right = columns[self.column], self.value
         other: object = columns[right[1:]] if right.startswith("$") else right
-        numbers = _number(left), _number(other)
+        numbers = number_of(left), number_of(other)
         if None not in numbers:
             return COMPARISONS[self.comparison](*numbers)
         if self.comparison in ("==", "!="):
@@ -47,10 +48,10 @@ def read_condition(text: str) -> Condition | None:
     return Condition(parts[1], parts[2], parts[3].strip("'\"")) if parts else None
 
 
-def _number(value: object) -> float | None:
-    if isinstance(value, bool):
-        return float(value)
+def number_of(value: object) -> float | None:
+    """A value or its text as a number, True as 1; None for what is none, as the words nan and inf."""
     try:
-        return float(value)  # type: ignore[arg-type]
+        number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         return None
+    return number if math.isfinite(number) else None

@@ -52,9 +52,16 @@ def simulate_power(
         ).assign(participants=n)
         for n in counts
     ]  # fmt: skip
-    digest = hashlib.sha256(json.dumps(loaded, sort_keys=True, default=str).encode()).hexdigest()
+    digest = hashlib.sha256(json.dumps(_in_order(loaded), default=str).encode()).hexdigest()
     table = pd.concat(tables, ignore_index=True)
     return PowerPart(str(loaded.get("study", "")), digest, seed, experiments, shard, table)
+
+
+def _in_order(value: Any) -> Any:
+    """The same with the keys of every mapping in order: numbers first, as a factor may have levels 2 and slow."""
+    if isinstance(value, Mapping):
+        return {key: _in_order(value[key]) for key in sorted(value, key=lambda key: (isinstance(key, str), key))}
+    return [_in_order(one) for one in value] if isinstance(value, list | tuple) else value
 
 
 def write_part(path: Path, part: PowerPart) -> Path:

@@ -51,9 +51,9 @@ def derived(folder: Path) -> tuple[list[Derived], list[Derived]]:
 
 
 def _noted(folder: Path) -> list[Derived]:
-    """The lines of the file; those that cannot be read are passed over."""
+    """The lines of the file; those that cannot be read are passed over (splitlines would cut names at U+2028)."""
     try:
-        lines = (folder / DERIVED).read_text(encoding="utf-8").splitlines()
+        lines = (folder / DERIVED).read_text(encoding="utf-8").split("\n")
     except OSError:
         return []
     noted: list[Derived] = []

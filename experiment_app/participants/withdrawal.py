@@ -12,6 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from experiment_app.durable import force_file
 from experiment_app.journal import append_line
 from experiment_app.participants.arrivals import (
     WITHDRAWN,
@@ -22,7 +23,7 @@ from experiment_app.participants.arrivals import (
     unknown_participant,
 )
 from experiment_app.participants.derived import Derived, derived
-from experiment_app.run_folder import JOURNAL, check_participant, lock
+from experiment_app.run_folder import JOURNAL, check_participant, journal_text, lock
 from protocols.record import Withdrawn, encode_line
 
 LEAVING = ".withdrawing-sub-"
@@ -87,9 +88,7 @@ def withdraw(plan: Withdrawal, remake: Callable[[Derived], None], say: Callable[
     if plan.person != leaving:
         os.rename(plan.person, leaving)
     if place is not None and place not in places_given_back(plan.folder):
-        with open(plan.folder / WITHDRAWN, "ab", buffering=0) as file:
-            append_line(file, encode_line(Withdrawn(place)))
-            os.fsync(file.fileno())
+        _give_back(plan.folder / WITHDRAWN, place)
     shutil.rmtree(leaving)
     say(f"Removed participant {plan.participant} from {plan.folder / 'sourcedata'} (files: {plan.files}).")
     if place is not None:
@@ -108,6 +107,16 @@ def withdraw(plan: Withdrawal, remake: Callable[[Derived], None], say: Callable[
         say(f"No longer there: {made.sentence}. If it was moved, it still holds {plan.participant}: delete it.")
     say("Copies made by hand, backups and anything published are out of reach; ask whoever keeps them.")
     return whole
+
+
+def _give_back(path: Path, place: int) -> None:
+    """Adds a place to those given back; what a power cut left of a line, which this command adds again, goes first."""
+    torn = journal_text(path).torn if path.exists() else 0
+    with open(path, "ab", buffering=0) as file:
+        file.truncate(file.tell() - torn)
+        file.seek(0, os.SEEK_END)
+        append_line(file, encode_line(Withdrawn(place)))
+        force_file(file.fileno())
 
 
 def _what_becomes_of(folder: Path, place: int) -> str:

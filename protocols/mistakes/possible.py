@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from protocols.condition import Condition, read_condition
+from protocols.condition import Condition, number_of, read_condition
 from protocols.mistakes.mistake import Mistake, Place, no_such
 from protocols.parts import Level
 
@@ -28,7 +28,7 @@ class Span:
     def among(self, value: str) -> list[float]:
         """Numbers of the span that tell what a comparison with a value can come out as: its ends, and the nearest."""
         top = self.minimum + 1.0 if self.maximum == math.inf else self.maximum
-        wanted = _number(value)
+        wanted = number_of(value)
         if wanted is None:
             return [self.minimum, top]
         top = max(top, wanted + 1.0) if self.maximum == math.inf else top
@@ -37,13 +37,6 @@ class Span:
             return [self.minimum, near, top]
         point = self.minimum + round((near - self.minimum) / self.step) * self.step
         return [self.minimum, wanted if math.isclose(point, wanted, rel_tol=1e-9, abs_tol=1e-9) else point, top]
-
-
-def _number(text: str) -> float | None:
-    try:
-        return float(text) if math.isfinite(float(text)) else None
-    except ValueError:
-        return None
 
 
 Possible = Span | tuple[Level, ...]
@@ -86,7 +79,7 @@ def _foregone(condition: Condition, possible: Possible, both_ways: bool) -> str:
     values = possible.among(value) if isinstance(possible, Span) else possible
     met = {condition.holds({column: one}) for one in values}
     can_be = str(possible) if isinstance(possible, Span) else ", ".join(map(str, possible))
-    if isinstance(possible, Span) and _number(value) is None:
+    if isinstance(possible, Span) and number_of(value) is None:
         return f"{column} is a number, and {value} is none; it can be: {can_be}"
     if True not in met:
         if sign == "==":

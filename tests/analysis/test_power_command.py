@@ -99,3 +99,9 @@ def test_the_normalised_walk_ratio_can_be_simulated_too() -> None:
     scaled = cell_means_of(model, 1, range(2))
     assert scaled == pytest.approx(plain * scale, rel=1e-10)
     assert isinstance(pd.DataFrame(many_anovas(scaled, model.design)), pd.DataFrame)
+
+
+def test_a_study_whose_levels_are_words_and_numbers_can_be_simulated() -> None:
+    study = {**as_dict(study_text()), "paces": {"slow": 1.0, 2: 1.2, 1: 0.8}}
+    hashes = {simulate_power(one, [8], experiments=2).study_hash for one in (study, dict(reversed(study.items())))}
+    assert len(hashes) == 1

@@ -11,7 +11,7 @@ import pytest
 from experiment_app.command import run
 from experiment_app.errors import UsageError
 from experiment_app.participants import withdrawal
-from experiment_app.participants.arrivals import places_given_back
+from experiment_app.participants.arrivals import WITHDRAWN, places_given_back
 from experiment_app.participants.withdrawal import plan_withdrawal
 from experiment_app.run_folder import participant_runs
 from protocols.record import decode_line
@@ -140,6 +140,20 @@ def test_a_withdrawal_in_a_copy_of_everything_leaves_the_original_alone(data, tm
     assert run(["withdraw", str(copy / "data" / "walk_ratio"), "--participant", "WITHDRAWN77", "--yes"]) == 0
     assert holding(copy, b"WITHDRAWN77") == []
     assert holding(tmp_path / "csv", b"WITHDRAWN77") != []
+
+
+def test_an_export_in_a_folder_with_any_letter_in_its_name_is_found_again(data, tmp_path):
+    out = tmp_path / "for\u2028the \u0085 reviewers"
+    assert run(["export", str(data), "--to", "csv", "--out", str(out)]) == 0
+    assert run(["withdraw", str(data), "--participant", "WITHDRAWN77", "--yes"]) == 0
+    assert holding(out, b"WITHDRAWN77") == []
+
+
+def test_a_line_that_a_power_cut_left_torn_takes_no_place_with_it(data):
+    (data / WITHDRAWN).write_bytes(b'{"kind":"withdr')
+    for participant in ("WITHDRAWN77", "P01"):
+        assert run(["withdraw", str(data), "--participant", participant, "--yes"]) == 0
+    assert len(places_given_back(data)) == 2
 
 
 def test_an_export_that_is_no_longer_where_it_was_made_is_named(data, tmp_path, capfd):

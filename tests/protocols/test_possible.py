@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protocols.condition import COMPARISONS
+from protocols.condition import COMPARISONS, Condition, number_of
 from protocols.mistakes.possible import Span, condition_mistakes
 from tests.protocols.studies import edited
 
@@ -86,3 +86,10 @@ def test_an_answer_outside_the_scale_is_refused_before_anyone_sits_down():
         "rating > 10 is never true; rating can be: 0 to 4 in steps of 1",
         "rating >= -1 is true of every trial; rating can be: 0 to 4 in steps of 1",
     }
+
+
+def test_alternatives_named_as_what_is_no_number_are_words():
+    assert [number_of(one) for one in ("nan", "-inf", "infinity", "Nan Jing", None)] == [None] * 5
+    assert [number_of(one) for one in ("3", " 1.5 ", True, 2)] == [3.0, 1.5, 1.0, 2.0]
+    assert Condition("chosen", "==", "nan").holds({"chosen": "nan"})
+    assert not Condition("chosen", "!=", "$original").holds({"chosen": "nan", "original": "nan"})
