@@ -123,15 +123,36 @@ def measure_label(plan: AnalysisPlan) -> str:
 
 
 def level_ticks(axes: Any, levels: Sequence[str], inches: float) -> None:
-    """Names of levels under an axis of so many inches, slanted or upright (on taller paper) if they overlap."""
+    """Names of levels under an axis of so many inches; if they overlap in two lines, slanted, or upright (taller paper)."""
     turned: dict[str, Any] = {}
     longest = max(map(len, levels))
-    if sum(len(level) + 2 for level in levels) > FITTING * inches:
+    halves = [_two_lines(level) for level in levels]
+    if _fit(levels, inches):
+        names = list(levels)
+    elif _fit([max(name.split("\n"), key=len) for name in halves], inches):
+        names = halves
+    else:
+        names = list(levels)
         turned = {"rotation": 90} if longest > UPRIGHT else {"rotation": 35, "ha": "right"}
-    axes.set_xticks(range(len(levels)), levels, **turned)
+    axes.set_xticks(range(len(levels)), names, **turned)
     if longest > UPRIGHT and turned:
         drawing = axes.get_figure()
         drawing.set_figheight(max(drawing.get_figheight(), 4.0 + 0.075 * longest))
+
+
+def _fit(names: Sequence[str], inches: float) -> bool:
+    """Whether names at equal distances on so many inches keep off each other; two long neighbours are what counts."""
+    widest = max((sum(map(len, two)) / 2 for two in pairwise(names)), default=len(names[0]))
+    return (widest + 2) * len(names) <= FITTING * inches
+
+
+def _two_lines(name: str) -> str:
+    """A name broken after the underscore, or at the space, nearest its middle; as it is when it has none."""
+    places = [i for i, letter in enumerate(name) if letter in "_ "]
+    if not places:
+        return name
+    middle = min(places, key=lambda i: abs(i - len(name) / 2))
+    return f"{name[: middle + 1].rstrip()}\n{name[middle + 1 :]}"
 
 
 def legend_above(drawing: Any, axes: Any, title: str | None = None) -> None:

@@ -17,7 +17,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from analysis import AnalysisError, AnalysisOutcome, AnalysisWarning, analyse, apa
-from analysis.figures.drawing import settings
+from analysis.figures.drawing import canvas, level_ticks, settings
 from analysis.figures.interaction import interaction
 from analysis.planned.comparison_tests import comparison_tests
 from analysis.planned.further_tests import planned_tests
@@ -215,3 +215,17 @@ def test_names_as_long_as_people_give_them_stay_on_the_paper_and_off_each_other(
     assert all(left.x1 <= right.x0 for left, right in pairwise(names))
     assert not axes.yaxis.label.get_window_extent().overlaps(names[0])
     assert axes.get_window_extent().height > 0.4 * paper.height
+
+
+def test_two_long_names_among_short_ones_are_broken_and_keep_off_each_other() -> None:
+    """The bodies of point-light studies: as long as these, side by side, they ran into each other."""
+    names = ["stick_figure", "point_light", "point_light_inverted", "point_light_scrambled"]
+    with settings():
+        drawing, axes = canvas(6.4, 3.6)
+        level_ticks(axes, names, 5.3)
+        drawing.canvas.draw()
+    shown = axes.get_xticklabels()
+    assert [text.get_text().replace("\n", "") for text in shown] == names
+    assert all(text.get_rotation() == 0 for text in shown)
+    boxes = [text.get_window_extent() for text in shown]
+    assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
