@@ -269,13 +269,18 @@ def without_collection() -> Iterator[None]:
 
 @contextmanager
 def ending_signals(request_end: Callable[[str], None]) -> Iterator[None]:
-    """Turns SIGTERM, SIGINT and SIGHUP into a request to end, so that the end is recorded like any other."""
+    """Turns SIGTERM, SIGINT and SIGHUP into a request to end, so that the end is recorded like any other.
+
+    A SIGHUP that is ignored stays so: nohup asks that a closed terminal ends nothing.
+    """
 
     def end(number: int, _: object) -> None:
         request_end(signal.Signals(number).name)
 
-    known = [getattr(signal, name) for name in SIGNALS if hasattr(signal, name)]
-    before = {number: signal.signal(number, end) for number in known}
+    known = {name: getattr(signal, name) for name in SIGNALS if hasattr(signal, name)}
+    if "SIGHUP" in known and signal.getsignal(known["SIGHUP"]) == signal.SIG_IGN:
+        del known["SIGHUP"]
+    before = {number: signal.signal(number, end) for number in known.values()}
     try:
         yield
     finally:

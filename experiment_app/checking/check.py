@@ -92,9 +92,9 @@ def _kept_in(what: str) -> str:
 def expected_minutes(study: Study) -> float:
     """How long a session takes, in minutes: reading every page, questions, trials, intervals and breaks."""
     words = sum(len(page.text.split()) for page in study.pages.in_order)
-    trials = len(make_trials(study, seed=1)) + len(study.practice)
-    breaks = (trials // study.breaks.every) * 60.0 if study.breaks else 0.0
-    answering = trials * (study.task.seconds(study.stimulus) + study.interval)
+    trials = len(make_trials(study, seed=1))
+    breaks = ((trials - 1) // study.breaks.every) * 60.0 if study.breaks else 0.0  # none follows the last trial
+    answering = (trials + len(study.practice)) * (study.task.seconds(study.stimulus) + study.interval)
     return words / READING_SPEED + (len(study.participants.questions) * 8.0 + answering + breaks) / 60.0
 
 

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from experiment_app.checking.check import expected_minutes
 from experiment_app.command import app, run
+from protocols.plan import make_plan
 from protocols.study_file import read_study
 from tests.experiment_app.sessions import opened, play
 from tests.protocols.studies import changed
@@ -95,6 +97,13 @@ def test_check_accepts_the_shipped_study_and_counts_its_trials(capfd):
     text = said(capfd)
     assert "96 trials" in text
     assert "minutes" in text
+
+
+def test_the_minutes_count_a_break_as_often_as_the_session_has_one():
+    study = read_study("walk_ratio").study
+    breaks = sum(step.id.startswith("break-") for step in make_plan(study, 1, 1).steps)
+    without = study.model_copy(update={"breaks": None})
+    assert expected_minutes(study) - expected_minutes(without) == pytest.approx(breaks)
 
 
 def test_check_draws_the_balance(tmp_path, capfd):

@@ -16,7 +16,7 @@ import pytest
 from experiment_app import opening
 from experiment_app.command import run as run_command
 from experiment_app.errors import RunError, UsageError
-from experiment_app.live import ScreenOptions, run_live
+from experiment_app.live import ScreenOptions, ending_signals, run_live
 from experiment_app.loop import run_session
 from experiment_app.opening import open_new
 from experiment_app.participants.arrivals import first_headers
@@ -310,6 +310,21 @@ def test_who_took_part_with_another_version_of_the_study_file_is_told_with_what_
     assert said == ["Note: P01, P02 took part with another version of this study file, which differs in pages.consent."]
 
 
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="needs POSIX signals")
+@pytest.mark.parametrize("nohup", [False, True])
+def test_a_closed_terminal_ends_a_run_unless_nohup_says_it_must_not(nohup):
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN if nohup else signal.SIG_DFL)
+    ended: list[str] = []
+    try:
+        with ending_signals(ended.append):
+            signal.raise_signal(signal.SIGHUP)
+            signal.raise_signal(signal.SIGTERM)
+        assert signal.getsignal(signal.SIGHUP) == (signal.SIG_IGN if nohup else signal.SIG_DFL)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    assert ended == (["SIGTERM"] if nohup else ["SIGHUP", "SIGTERM"])
+
+
 @pytest.mark.slow
 @pytest.mark.window
 @pytest.mark.skipif(not os.environ.get("DISPLAY"), reason="needs an X display (Xvfb will do)")
@@ -331,6 +346,7 @@ def test_every_signal_leaves_a_known_reason_in_a_real_run(tmp_path, number, reas
         [sys.executable, "-m", "experiment_app", "run", str(study), "--participant", "P01", "--pilot",
          "--data", str(tmp_path / "data"), "--window", "--size", "320x200"],
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=ROOT,
+        preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),  # the tests may run under nohup
     )  # fmt: skip
     journal = tmp_path / "data/walk_ratio/sourcedata/sub-P01/run-1/journal.jsonl"
     _wait_for_a_line(journal, process)
