@@ -193,6 +193,10 @@ def _explain(error: Any, document: Any) -> Mistake:
         allowed = _allowed_keys(document, where[:-1])
         near = difflib.get_close_matches(str(where[-1]), allowed, n=1, cutoff=0.6)
         way = f"did you mean {near[0]}?" if near else f"allowed here: {', '.join(allowed)}"
+        if value is None and " " in str(where[-1]):
+            way = "between { and } a text with a comma stands in quotes"
+        elif str(where[-1]).startswith("$"):
+            way = f"what stands here is the same in all trials, no table by a factor; {way}"
         return Mistake(where, f"unknown key; {way}", on_key=True)
     if kind == "union_tag_not_found":
         return Mistake(where, "the key kind is missing; it says which of several parts this is")
@@ -208,6 +212,8 @@ def _explain(error: Any, document: Any) -> Mistake:
         hint = f"; did you mean {near[0]}?" if near else ""
         if not isinstance(value, str) and str(value) in words:
             return Mistake(where, f'{shown} needs quotes here, as "{value}"')
+        if isinstance(value, str) and value.startswith("$"):
+            hint = "; it is the same in all trials, no factor's level"
         if len(expected) > 160:
             expected = "the names of keys, as left, right, enter, space, a, 1"
         return Mistake(where, f"{shown} is not allowed; allowed: {expected}{hint}")

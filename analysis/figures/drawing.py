@@ -123,7 +123,7 @@ def measure_label(plan: AnalysisPlan) -> str:
 
 
 def level_ticks(axes: Any, levels: Sequence[str], inches: float) -> None:
-    """Names of levels under an axis of so many inches; if they overlap in two lines, slanted, or upright (taller paper)."""
+    """Names of levels under an axis of so many inches; if they overlap in two lines, slanted, or upright."""
     turned: dict[str, Any] = {}
     longest = max(map(len, levels))
     halves = [_two_lines(level) for level in levels]
