@@ -34,7 +34,7 @@ def readme(runs: Sequence[ExportedRun], to: str) -> bytes:
     text = (
         f"# {study.get('title', study.get('study'))}\n\n{warning}"
         f"{' '.join(str(study.get('about', '')).split())}\n\n"
-        f"{people} participants, {len(runs)} runs, {KINDS[to]}.\n\n"
+        f"Participants: {people}, runs: {len(runs)}, {KINDS[to]}.\n\n"
         "Everything here was made by gaitlab from one append-only journal a run; the study file with factors, texts, "
         "seeds and the planned analysis comes with it. Lengths are in m, times in s since the run began, step "
         "frequencies in steps/min, walk ratios in m·min.\n\n"

@@ -36,7 +36,7 @@ def export(
     for note in done.notes:
         problems.print(f"Note: {note}", style="yellow", markup=False)
     out.print(
-        f"{done.participants} participants, {done.runs} runs, {len(done.paths)} files in {out_folder}", markup=False
+        f"Participants: {done.participants}, runs: {done.runs}, files: {len(done.paths)}, in {out_folder}", markup=False
     )
     if to == "bids":
         out.print(

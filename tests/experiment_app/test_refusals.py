@@ -180,7 +180,7 @@ def test_a_copied_participant_counts_once_and_the_copy_is_named(tmp_path, capfd,
     assert run(["export", str(study), "--to", "csv", "--out", str(tmp_path / "csv")]) == 0
     told = " ".join(capfd.readouterr())
     assert f"{once}; left out." in told
-    assert "1 participants, 1 runs" in told
+    assert "Participants: 1, runs: 1" in told
     recorded = read_study(study)
     assert [one.participant for one in recorded.runs] == ["P01"]
     assert [f"{who}: {why}" for who, why in recorded.left_out] == [once]
@@ -219,7 +219,7 @@ def test_two_people_whom_two_computers_gave_one_id_are_told_apart_by_the_names_o
     assert run(["export", str(study), "--to", "csv", "--out", str(tmp_path / "csv")]) == 0
     said = " ".join(capfd.readouterr())
     assert told in said
-    assert "2 participants, 2 runs" in said
+    assert "Participants: 2, runs: 2" in said
 
 
 def test_somebody_who_came_back_at_another_computer_has_two_runs(tmp_path):
