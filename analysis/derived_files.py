@@ -18,8 +18,8 @@ from analysis.writing import write_bytes
 class Derivation:
     """What is made of recorded runs and written into a folder.
 
-    noun: "export" or "report"; source: the data it is made of, as a sentence names them; alone: it shares its folder
-    with no other files.
+    noun: "export", "report" or "comparison"; source: the data it is made of, as a sentence names them; alone: it
+    shares its folder with no other files.
     """
 
     noun: str

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from analysis.derived_files import Derivation, write_derived
 from analysis.errors import AnalysisError
 from analysis.statistics.repeated_measures import anova
 from analysis.walk_methods.figures import (
@@ -20,6 +21,8 @@ from analysis.walk_methods.figures import (
     points_figure,
     rebuilding_figure,
 )
+
+COMPARISON = Derivation("comparison", "ways of making a walk", alone=False)
 
 ORDER = ("hermite", "pchip", "cubic")
 """Interpolations from the best to the worst as published (Niay 2022, section 5.2.1)."""
@@ -109,27 +112,31 @@ def published_order(errors: Sequence[RebuildingError], table: pd.DataFrame) -> l
 
 
 def write_report(comparison: Comparison, folder: Path) -> ComparisonReport:
-    """Writes tables, figures and report.md into `folder`."""
-    folder.mkdir(parents=True, exist_ok=True)
+    """Writes tables, figures and report.md into `folder`, over those of an earlier comparison.
+
+    Raises AnalysisError when a file is in the way that no comparison wrote, or that a person has changed since.
+    """
     methods = pd.DataFrame([asdict(row) for row in comparison.methods])
     errors = pd.DataFrame([asdict(row) for row in comparison.errors])
-    methods.to_csv(folder / "methods.csv", index=False, float_format="%.5g")
-    errors.to_csv(folder / "rebuilding.csv", index=False, float_format="%.6g")
-    paths = [folder / "methods.csv", folder / "rebuilding.csv"]
     pictures = {
         "points": points_figure(comparison.clouds) if comparison.clouds else None,
         "rebuilding": rebuilding_figure(comparison.rebuilt) if comparison.rebuilt else None,
         "error": error_figure(_means(errors)) if len(errors) else None,
         "films": film_figure(comparison.films) if comparison.films else None,
     }
-    for name, content in pictures.items():
-        if content is not None:
-            paths.append(folder / f"{name}.png")
-            paths[-1].write_bytes(content)
     headlines, anova_lines = _tested(comparison)
-    text = "\n".join([*_text(comparison, methods, errors), *anova_lines, *_pictures(pictures)])
-    (folder / "report.md").write_text(text + "\n", encoding="utf-8")
-    return ComparisonReport(tuple(headlines), (folder / "report.md", *paths))
+    text = "\n".join([*_text(comparison, methods, errors), *anova_lines, *_pictures(pictures)]) + "\n"
+    files = [
+        ("report.md", text.encode("utf-8")),
+        ("methods.csv", _csv(methods, "%.5g")),
+        ("rebuilding.csv", _csv(errors, "%.6g")),
+        *((f"{name}.png", content) for name, content in pictures.items() if content is not None),
+    ]
+    return ComparisonReport(tuple(headlines), tuple(write_derived(folder, COMPARISON, files)))
+
+
+def _csv(frame: pd.DataFrame, float_format: str) -> bytes:
+    return str(frame.to_csv(index=False, float_format=float_format, lineterminator="\n")).encode("utf-8")
 
 
 def _tested(comparison: Comparison) -> tuple[list[str], list[str]]:

@@ -6,7 +6,13 @@ from pathlib import Path
 import pytest
 
 from analysis.errors import AnalysisError
-from analysis.walk_methods.comparison import RebuildingError, published_order, rebuilding_anova
+from analysis.walk_methods.comparison import (
+    Comparison,
+    RebuildingError,
+    published_order,
+    rebuilding_anova,
+    write_report,
+)
 from experiment_app.command import run
 from experiment_app.comparing_methods import walks_in
 from experiment_app.errors import UsageError
@@ -28,6 +34,20 @@ def test_the_report_has_every_method_at_three_speeds_and_pictures(tmp_path, monk
     assert "from 0 to 10 km/h" in text
     assert "drawn ones" in text
     assert "published order Hermite, PCHIP, cubic spline" in capsys.readouterr().out
+
+
+def test_a_comparison_made_again_replaces_its_own_files_and_nobody_elses(tmp_path, capfd):
+    comparison = Comparison(methods=(), errors=tuple(errors_of(PUBLISHED)), whose="four people")
+    first = {path.name: path.read_bytes() for path in write_report(comparison, tmp_path / "out").paths}
+    assert {path.name: path.read_bytes() for path in write_report(comparison, tmp_path / "out").paths} == first
+    (tmp_path / "out" / "report.md").write_text("my own words", encoding="utf-8")
+    with pytest.raises(AnalysisError, match=r"report\.md was changed since the comparison was made"):
+        write_report(comparison, tmp_path / "out")
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "methods.csv").write_text("mine", encoding="utf-8")
+    assert run(["compare-methods", "F2", "--out", str(tmp_path / "mine")]) != 0
+    assert "methods.csv was not written by gaitlab" in " ".join(capfd.readouterr().err.split())
+    assert (tmp_path / "mine" / "methods.csv").read_text(encoding="utf-8") == "mine"
 
 
 @pytest.mark.skipif(not CMU.is_dir(), reason="the shared captures are not beside the checkout")
