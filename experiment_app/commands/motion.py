@@ -173,7 +173,8 @@ def show(
     library: Library = None,
 ) -> int:
     """Look at an actor: a window with the keyboard, or a film strip where there is no screen."""
-    from experiment_app.pictures.actor_pages import film_strip, has_screen, walk_in_window
+    from experiment_app.pictures.actor_pages import film_strip, walk_in_window
+    from experiment_app.windows.screen import has_screen
 
     require_ending("--picture", picture, "the strip is a PNG", "strip.png")
     _use(library)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -22,6 +20,7 @@ from experiment_app.simulated.observer import SimulatedParticipant, draw_observe
 from experiment_app.simulated.simulate import simulate
 from experiment_app.terminal import ShowProgress
 from experiment_app.windows.offscreen import OffscreenWindow
+from experiment_app.windows.screen import has_screen
 from protocols.orders.assignment import group_of
 from protocols.orders.design import default_seed
 from protocols.plan import TrialStep
@@ -64,13 +63,6 @@ def run_demo(name: str, folder: Path, *, off_screen: bool, say: Callable[[str], 
             say(f"  {path}")
     say(f"Report: {folder / 'report' / 'report.html'}")
     return 0
-
-
-def has_screen() -> bool:
-    """Whether a window can be expected to open here."""
-    if sys.platform.startswith("linux"):
-        return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
-    return True
 
 
 def _fresh(folder: Path) -> Path:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import textwrap
-import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -252,15 +251,6 @@ def film_strip(actor: Actor, speed: float, step_frequency: float, path: Path) ->
         renderer.release()
         context.release()
     save_strip(frames, path, STRIP_FRAMES)
-
-
-def has_screen() -> bool:
-    """True where a window can be opened."""
-    import glfw
-
-    with warnings.catch_warnings():  # no screen is an answer here, and no mistake
-        warnings.simplefilter("ignore", glfw.GLFWError)
-        return bool(glfw.init()) and bool(glfw.get_monitors())
 
 
 def walk_in_window(actor: Actor, speed: float, step_frequency: float) -> None:

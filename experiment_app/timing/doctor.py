@@ -28,7 +28,7 @@ def examine(off_screen: bool, *, display: int = 1, keys: bool = True) -> Timing:
 
     keys: also presses a key that no study uses (the right Control key), where the X server allows it.
     """
-    from experiment_app.demonstration.demo import has_screen
+    from experiment_app.windows.screen import has_screen
 
     return _off_screen() if off_screen or not has_screen() else _on_screen(display, keys)
 

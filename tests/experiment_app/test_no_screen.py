@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-ASKS = "from experiment_app.pictures.actor_pages import has_screen; print(has_screen())"
+ASKS = "from experiment_app.windows.screen import has_screen; print(has_screen())"
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a screen is not named by the environment")
