@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from experiment_app.render.drawn import CrowdLook, DrawnCrowd
+from experiment_app.render.drawn import PLACE, ROW_TEXELS, CrowdLook, DrawnCrowd
 from experiment_app.scene import STREET_HALF_WIDTH, Crowd, Palette
 from stimuli.blend_tree import Leaf
 from stimuli.crowds.bodies import crowd_body
@@ -35,17 +35,15 @@ class CrowdCast:
 def drawn_crowd(crowd: Crowd) -> DrawnCrowd:
     """Everybody of the crowd, posed and in place at its time."""
     cast = crowd_cast(replace(crowd, seconds=0.0))
-    places = cast.plan.places(crowd.seconds)
-    rows = np.zeros((crowd.size, 64, 4), np.float32)
-    matrices = rows[:, :63].reshape(crowd.size, 21, 3, 4)
-    poser()(cast.mix, cast.plan.phases(crowd.seconds), matrices)
-    rows *= cast.plan.sizes.astype(np.float32)[:, None, None]
-    rows[:, 63, 0] = places[:, 0]
-    rows[:, 63, 1] = 0.0
-    rows[:, 63, 2] = places[:, 1] + (END - cast.plan.length)
-    rows[:, 63, 3] = np.arange(crowd.size)
-    rows[:, :63, 3] += np.tile(rows[:, 63, :3], 21)
-    ends = np.minimum(places[:, 1] / FADING[0], (cast.plan.length - places[:, 1]) / FADING[1])
+    plan = cast.plan
+    along = plan.places(crowd.seconds)
+    places = along + np.array([0.0, END - plan.length])
+    rows = np.zeros((crowd.size, ROW_TEXELS, 4), np.float32)
+    transforms = rows[:, :PLACE].reshape(crowd.size, -1, 2, 4)
+    poser()(cast.mix, plan.phases(crowd.seconds), transforms, plan.sizes, places)
+    rows[:, PLACE, 0], rows[:, PLACE, 2] = places.T
+    rows[:, PLACE, 3] = np.arange(crowd.size)
+    ends = np.minimum(along[:, 1] / FADING[0], (plan.length - along[:, 1]) / FADING[1])
     return DrawnCrowd(cast.look, rows, np.minimum(ends, 1.0))
 
 

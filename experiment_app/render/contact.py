@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from experiment_app.render.drawn import CrowdLook, DrawnCrowd, DrawnWalker
+from experiment_app.render.drawn import PLACE, CrowdLook, DrawnCrowd, DrawnWalker
 from stimuli.bodies.body import Body
 from stimuli.skeleton import JOINTS, Floats
 
@@ -61,20 +61,35 @@ def fill_occluders(rows: Floats, walkers: Sequence[DrawnWalker]) -> None:
 def crowd_occluders(crowd: DrawnCrowd, there: NDArray[np.intp]) -> Floats:
     """(K, CROWD_TEXELS, 4) float32, as fill_occluders writes them, of the walkers `there` (K,) of a crowd."""
     rows = np.empty((len(there), CROWD_TEXELS, 4), np.float32)
-    places = crowd.rows[there, 63, :3]
+    places = crowd.rows[there, PLACE, :3]
     statures = crowd.cast.statures[there]
-    joints = 3 * _JOINTS[_OF_CROWDS][:, None] + np.arange(3)
-    matrices = crowd.rows[there].take(joints, axis=1)  # half of the time of both indices at once
     rows[:, 0, :3], rows[:, 0, 3] = places, CROWD_HALF_SIZE * statures
-    rows[:, 1:, :3] = np.einsum("kbij,kbj->kbi", matrices, _crowd_balls(crowd.cast)[there])
+    joints = 2 * _JOINTS[_OF_CROWDS] + np.arange(2)[:, None]
+    chosen = crowd.rows[there].take(joints, axis=1)  # half of the time of both indices at once
+    turn, moved = np.ascontiguousarray(chosen.transpose(1, 3, 2, 0))
+    ball = _crowd_balls(crowd.cast)[..., there]
+    rows[:, 1:, :3] = (_turned(turn, ball) + moved[:3]).transpose(2, 1, 0)
     rows[:, 1:, 3] = _RADII[_OF_CROWDS] * statures[:, None]
     return rows
 
 
+def _turned(turn: Floats, vector: Floats) -> Floats:
+    """(3, ...): vectors turned by quaternions (4, ...) and made as many times longer as these are in square."""
+    x, y, z, w = turn
+    a, b, c = vector
+    u = w * a + y * c - z * b, w * b + z * a - x * c, w * c + x * b - y * a
+    square = x * x + y * y + z * z + w * w
+    x, y, z = x + x, y + y, z + z
+    return np.array(
+        [square * a + y * u[2] - z * u[1], square * b + z * u[0] - x * u[2], square * c + x * u[1] - y * u[0]]
+    )
+
+
 @lru_cache(maxsize=8)
 def _crowd_balls(cast: CrowdLook) -> Floats:
-    """(N, balls, 4) float32: as _balls, of each walker's body."""
-    return np.stack([_balls(body)[_OF_CROWDS, :, 0] for body in cast.bodies])[cast.body]
+    """(3, balls, N) float32 m: middles of the balls of each walker's body in the bind pose."""
+    balls = np.stack([_balls(body)[_OF_CROWDS, :3, 0] for body in cast.bodies])[cast.body]
+    return np.ascontiguousarray(balls.transpose(2, 1, 0))
 
 
 @lru_cache(maxsize=2048)

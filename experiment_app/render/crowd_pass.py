@@ -21,7 +21,7 @@ from experiment_app.render.crowd_levels import (
     within_picture,
 )
 from experiment_app.render.crowd_light import may_shade
-from experiment_app.render.drawn import CrowdLook, DrawnCrowd
+from experiment_app.render.drawn import PLACE, ROW_TEXELS, CrowdLook, DrawnCrowd
 from experiment_app.render.light import ON_CROWDS, Sunlight
 from experiment_app.render.part_map import SHADER_CONSTANTS
 from experiment_app.render.programs import build, set_if_used
@@ -44,12 +44,12 @@ class CrowdPass:
         self._shadow: dict[int, moderngl.Program] = {}  # by carriers
         self._parts = build(context, "part_map.vert", "part_map.frag", {**SHADER_CONSTANTS, **CROWD})
         self._meshes: CrowdMeshes | None = None
-        self._poses = _table(context, 64, 1)
+        self._poses = _table(context, ROW_TEXELS, 1)
         self._tables = [context.buffer(reserve=INSTANCE_BYTES, dynamic=True) for _ in range(2)]
         self._seen = self._casting = Instances(np.zeros((0, 4), np.float32), ())
 
     def place(self, crowd: DrawnCrowd, viewpoint: Viewpoint, picture_height: int, forced: int | None = None) -> None:
-        """Uploads this frame's matrices and decides the levels of detail, unless one is forced."""
+        """Uploads this frame's transforms and decides the levels of detail, unless one is forced."""
         cast = crowd.cast
         if self._meshes is None or self._meshes.cast is not cast:
             if self._meshes is not None:
@@ -57,7 +57,7 @@ class CrowdPass:
             self._meshes = CrowdMeshes(self._context, cast)
             self._build(self._meshes.carriers)
         levels = self._meshes.levels
-        places = crowd.rows[:, 63, :3]
+        places = crowd.rows[:, PLACE, :3]
         distance = distances(viewpoint, places)
         heights = heights_on_screen(viewpoint, distance, cast.statures, picture_height)
         seen = within_picture(viewpoint, places, 0.7 * cast.statures)

@@ -11,7 +11,7 @@ from experiment_app.render.contact_pass import EVERYWHERE, ContactPass
 from experiment_app.render.crowd_levels import distances
 from experiment_app.render.crowd_light import crowd_sunlight, map_size
 from experiment_app.render.crowd_pass import CrowdPass
-from experiment_app.render.drawn import DrawnCrowd
+from experiment_app.render.drawn import PLACE, DrawnCrowd
 from experiment_app.render.ground_pass import GroundPass
 from experiment_app.render.light import ON_CROWDS, Sunlight
 from experiment_app.render.shadow_map import ShadowMap
@@ -67,7 +67,7 @@ class CrowdStage:
         else:
             ground = self._open_ground()
         ground.draw_floor(viewpoint, sunlight)
-        close = np.flatnonzero((distances(viewpoint, crowd.rows[:, 63, :3]) < TOUCHED) & (crowd.shown > 0.5))
+        close = np.flatnonzero((distances(viewpoint, crowd.rows[:, PLACE, :3]) < TOUCHED) & (crowd.shown > 0.5))
         if len(close):
             self._contact.draw_rows(crowd_occluders(crowd, close), viewpoint, area)
         ground.draw_background(viewpoint, sunlight)

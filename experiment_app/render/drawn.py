@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stimuli.bodies.body import Body
-from stimuli.skeleton import Floats
+from stimuli.skeleton import JOINTS, Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,12 +48,17 @@ class CrowdLook:
     statures: Floats
 
 
+PLACE = 2 * len(JOINTS)  # of a row, where the walker's place stands
+ROW_TEXELS = PLACE + 1
+
+
 @dataclass(frozen=True, eq=False)
 class DrawnCrowd:
     """A crowd at one instant.
 
-    rows:  (N, 64, 4) float32: 21 x 3 rows of matrices from a vertex of the bind pose to the world, then the walker's
-           place (x, y, z m) and number.
+    rows:  (N, 43, 4) float32: of each of the 21 joints what brings a vertex of the bind pose to the world, a quaternion
+           x y z w, as long as the square root of the walker's size, and a translation x y z (m), 0; then the
+           walker's place (x, y, z m) and number.
     shown: (N,) 0 to 1, how much of each is there: less near the ends of the stretch the crowd walks.
     """
 

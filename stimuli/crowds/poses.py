@@ -1,7 +1,8 @@
 """A thousand walkers posed at once: `walker.drawn_pose` and `skin_matrices` as arithmetic on planes of float32.
 
 Every number of a walker is a plane over all walkers (structure of arrays), so an operation is one pass over
-contiguous memory; joints are turned one level of depth at a time, as quaternions. Gives the matrices of drawn_pose
+contiguous memory; joints are turned one level of depth at a time. What comes out are quaternions and translations,
+eight numbers a joint where a matrix has twelve, which is what a GPU reads fastest; they are the matrices of drawn_pose
 within 1e-4. Knows no clock; `compiled_poses` does the same with numba.
 """
 
@@ -28,28 +29,59 @@ UPPER_LEVELS = (
 LEG_LEVELS = ((slice(15, 17), slice(13, 15)), (slice(17, 19), slice(15, 17)), (slice(19, 21), slice(17, 19)))
 """The same of the legs, below the hip joints."""
 
+_BY_NUMBER = np.argsort(PLANES)
+"""Of each joint of JOINTS, its plane."""
+
 LEVELS = (*UPPER_LEVELS, (slice(13, 15), slice(0, 1)), *LEG_LEVELS)
 
 
-def many_matrices(mix: Mix, phases: Floats, out: Singles | None = None) -> Singles:
-    """(N, 21, 3, 4) float32: bind-pose vertices -> each walker's frame, at phases (N,) of the gait cycle.
+def many_transforms(
+    mix: Mix,
+    phases: Floats,
+    out: Singles | None = None,
+    sizes: Floats | None = None,
+    places: Floats | None = None,
+) -> Singles:
+    """(N, 21, 2, 4) float32: bind-pose vertices -> the world, at phases (N,) of the gait cycle.
 
-    out: where to write; a view of a larger array will do.
+    Of each joint the quaternion x y z w that turns the vertices, as long as the square root of the walker's size, then
+    the x y z (m) they are moved by, and 0.
+    out:    where to write; a view of a larger array will do.
+    sizes:  (N,) how many times as large as the figure each walker is, 1 if left out.
+    places: (N, 2) x and z (m) of each walker on the ground, the origin if left out: the walkers' own frames.
     """
     if out is None:
-        out = np.empty((len(mix), len(JOINTS), 3, 4), np.float32)
+        out = np.empty((len(mix), len(JOINTS), 2, 4), np.float32)
     phase = np.asarray(phases, np.float64)
     phase = phase - np.floor(phase)
     body = _blended(mix.table.body[None], mix, phase[None])[:, 0]
     hips = body[4 * UPPER_COUNT :]
-    frames = np.empty((3, 4, len(JOINTS), len(mix)), np.float32)
-    turn = frames[:, :3]
-    _write_turns(turn[:, :, :UPPER_COUNT], _world_turns(body[: 4 * UPPER_COUNT].reshape(4, UPPER_COUNT, -1)))
-    _pose_legs(mix, phase, hips, turn)
-    _move(frames[:, 3], turn, hips, mix.constants.rest)
-    for plane, joint in enumerate(PLANES):
-        out[:, joint] = frames[:, :, plane].transpose(2, 0, 1)
+    frames = np.zeros((2, 4, len(JOINTS), len(mix)), np.float32)
+    rotations = frames[0]
+    _turn_upper_body(body[: 4 * UPPER_COUNT].reshape(4, UPPER_COUNT, -1), rotations)
+    _pose_legs(mix, phase, hips, rotations)
+    _move(frames[1, :3], _matrices(rotations), hips, mix.constants.rest)
+    if sizes is not None:
+        frames[0] *= np.sqrt(sizes, dtype=np.float32)
+        frames[1] *= sizes.astype(np.float32)
+    if places is not None:
+        frames[1, :3:2] += places.T.astype(np.float32)[:, None]
+    out[...] = frames.transpose(3, 2, 0, 1)[:, _BY_NUMBER]
     return out
+
+
+def as_matrices(transforms: Singles) -> Singles:
+    """(..., 3, 4): the matrices of transforms (..., 2, 4), which a vertex (x, y, z, 1) is multiplied by.
+
+    A quaternion of length sqrt(s) turns and makes s times as large, as every element of the matrix is a sum of
+    products of two of its numbers.
+    """
+    turn = transforms[..., 0, :]
+    products = (turn[..., :, None] * turn[..., None, :]).reshape(*turn.shape[:-1], 16)
+    matrices = np.empty((*turn.shape[:-1], 3, 4), np.float32)
+    matrices[..., :3] = (products @ _OF_PRODUCTS).reshape(*turn.shape[:-1], 3, 3)
+    matrices[..., 3] = transforms[..., 1, :3]
+    return matrices
 
 
 def _blended(tables: Singles, mix: Mix, place: Floats) -> Singles:
@@ -70,30 +102,51 @@ def _blended(tables: Singles, mix: Mix, place: Floats) -> Singles:
     return np.ascontiguousarray(means[:, 0].T).reshape(columns, count, -1)
 
 
-def _world_turns(local: Singles) -> Singles:
-    """(4, 13, N) world rotations x y z w of the upper body by depth, from local ones of any length."""
-    local = local / np.sqrt(np.einsum("kjn,kjn->jn", local, local))
+def _turn_upper_body(local: Singles, rotations: Singles) -> None:
+    """Writes the world rotations x y z w of the upper body by depth, from local ones (4, 13, N) of any length."""
+    turned = rotations[:, :UPPER_COUNT]
+    np.divide(local, np.sqrt(np.einsum("kjn,kjn->jn", local, local)), out=turned)
     for joints, parents in UPPER_LEVELS:
-        ax, ay, az, aw = local[:, parents]
-        bx, by, bz, bw = local[:, joints]
-        local[:, joints] = (
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-            aw * bw - ax * bx - ay * by - az * bz,
-        )
-    return local
+        turned[:, joints] = _product(turned[:, parents], turned[:, joints])
 
 
-def _write_turns(turn: Singles, rotations: Singles) -> None:
-    """Writes the matrices (3, 3, ..., N) of unit quaternions (4, ..., N)."""
+def _product(first: Singles, second: Singles) -> tuple[Singles, Singles, Singles, Singles]:
+    """x y z w of the rotation that turns by the second quaternions (4, ..., N), then by the first."""
+    ax, ay, az, aw = first
+    bx, by, bz, bw = second
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+def _matrices(rotations: Singles) -> Singles:
+    """(3, 3, ..., N): the matrices of unit quaternions (4, ..., N)."""
     x, y, z, w = rotations
     x2, y2, z2 = x + x, y + y, z + z
     xx, yy, zz, xy, xz, yz = x * x2, y * y2, z * z2, x * y2, x * z2, y * z2
     wx, wy, wz = w * x2, w * y2, w * z2
+    turn = np.empty((3, 3, *x.shape), np.float32)
     turn[0, 0], turn[0, 1], turn[0, 2] = 1.0 - yy - zz, xy - wz, xz + wy
     turn[1, 0], turn[1, 1], turn[1, 2] = xy + wz, 1.0 - xx - zz, yz - wx
     turn[2, 0], turn[2, 1], turn[2, 2] = xz - wy, yz + wx, 1.0 - xx - yy
+    return turn
+
+
+def _of_products() -> Singles:
+    """(16, 9): how often each product of two of a quaternion's x y z w is in each element of its matrix."""
+    counts = np.zeros((4, 4, 3, 3), np.float32)
+    for row in range(3):
+        following, last = (row + 1) % 3, (row + 2) % 3
+        counts[range(4), range(4), row, row] = [1.0 if number in (row, 3) else -1.0 for number in range(4)]
+        counts[row, following, [row, following], [following, row]] = 2.0
+        counts[last, 3, [row, following], [following, row]] = -2.0, 2.0
+    return counts.reshape(16, 9)
+
+
+_OF_PRODUCTS = _of_products()
 
 
 def _turned(turn: Singles, vector: Singles) -> Singles:
@@ -113,8 +166,8 @@ def _move(moved: Singles, turn: Singles, hips: Singles, rest: Singles) -> None:
         moved[:, joints] = moved[:, parents] + _turned(bend, rest[:, joints])
 
 
-def _pose_legs(mix: Mix, phase: Floats, hips: Singles, turn: Singles) -> None:
-    """Writes the legs' world rotations into turn, and lowers the hips (3, N) where a leg would not reach.
+def _pose_legs(mix: Mix, phase: Floats, hips: Singles, rotations: Singles) -> None:
+    """Writes the legs' world rotations, and lowers the hips (3, N) where a leg would not reach.
 
     Where the ankle is and how far the hips come down is worked out in float64: see `_solved`.
     """
@@ -128,9 +181,10 @@ def _pose_legs(mix: Mix, phase: Floats, hips: Singles, turn: Singles) -> None:
     pitch = contact.flattened(pitch)
     bend = contact.toe_bend(pitch, contact.swing_progress(clock).astype(np.float32))
     forward, up = contact.planted(legs.sole, pitch, bend)
-    cosine, sine = np.cos(yaw), np.sin(yaw)
+    half = np.array([np.sin(0.5 * yaw), np.cos(0.5 * yaw)])
+    sine, cosine = 2.0 * half[0] * half[1], half[1] * half[1] - half[0] * half[0]
     ankle = np.array([aside + sine * forward, up + clearance, place + cosine * forward])
-    way = ankle - hips[:, None] - _turned(turn[:, :, :1], legs.hip)
+    way = ankle - hips[:, None] - _turned(_matrices(rotations[:, :1]), legs.hip)
     length = legs.bones.sum(axis=0)
     far = np.sqrt(way[0] * way[0] + way[2] * way[2])
     way[::2] *= np.minimum(1.0, FURTHEST * length / np.maximum(far, 1e-6))
@@ -140,15 +194,17 @@ def _pose_legs(mix: Mix, phase: Floats, hips: Singles, turn: Singles) -> None:
     lowering = LOWERING_SOFTNESS * contact.softly_positive(excess).sum(axis=0)
     hips[1] -= lowering
     way[1] += lowering
-    turn[:, :, 13:17] = _solved(legs, way, reach, knee_yaw).reshape(3, 3, 4, -1)
-    _write_feet(turn[:, :, 17:21].reshape(3, 3, 2, 2, -1), cosine, sine, np.array([pitch, pitch + bend]))
+    both = rotations[:, 13:].reshape(4, 4, 2, -1)
+    both[:, :2] = _solved(legs, way, reach, knee_yaw)
+    both[:, 2:] = _feet(half, np.array([pitch, pitch + bend]))
 
 
-def _solved(legs: Constants, way: Floats, reach: Floats, knee_yaw: Singles) -> Singles:
-    """World rotations (3, 3, 2, 2, N) of thighs and shanks, as two_bone.solve without its arc cosines.
+def _solved(legs: Constants, way: Floats, reach: Floats, knee_yaw: Singles) -> tuple[Singles, ...]:
+    """World rotations x y z w, each (2, 2, N), of thighs and shanks, as two_bone.solve without its arc cosines.
 
     way: (3, 2, N) m from hip to ankle, float64: near a straight leg the knee is a hundred times as sensitive. The
-    angles' sines come from the triangle's area (Heron's formula).
+    angles' sines come from the triangle's area (Heron's formula). The plane of the leg is turned first (from the
+    ground's axes, so by less than half a turn), then each bone in it about the hinge.
     """
     far = np.sqrt(np.einsum("k...,k...->...", way, way))
     down = (way / far).astype(np.float32)
@@ -162,10 +218,17 @@ def _solved(legs: Constants, way: Floats, reach: Floats, knee_yaw: Singles) -> S
     bent = (near + other - far) * (near + other + far) * (far - near + other) * (far + near - other)
     sine = (np.sqrt(np.maximum(bent, 0.0)) / (2.0 * near * far)).astype(np.float32)
     sine[1] *= -1.0
-    bone = cosine * down[:, None] + sine * ahead[:, None]
-    hinge = np.broadcast_to(hinge[:, None], bone.shape)
-    frame = np.array([bone, hinge, _cross(hinge, bone)])
-    return np.asarray(np.einsum("kr...,kc...->rc...", frame, legs.bones_at_rest))
+    w = 0.5 * np.sqrt(np.maximum(1.0 + hinge[0] - down[1] + ahead[2], 1e-6))
+    x, y, z = np.array([-down[2] - ahead[1], ahead[0] - hinge[2], hinge[1] + down[0]]) * (0.25 / w)
+    half_cosine = np.sqrt(np.maximum(0.5 + 0.5 * cosine, 1e-6))
+    half_sine = -0.5 * sine / half_cosine
+    in_plane = (
+        w * half_sine + x * half_cosine,
+        y * half_cosine + z * half_sine,
+        z * half_cosine - y * half_sine,
+        w * half_cosine - x * half_sine,
+    )
+    return _product(np.array(in_plane), legs.bones_from_rest)
 
 
 def _cross(first: Singles, second: Singles) -> Singles:
@@ -174,9 +237,10 @@ def _cross(first: Singles, second: Singles) -> Singles:
     return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
-def _write_feet(turn: Singles, cosine: Singles, sine: Singles, pitch: Singles) -> None:
-    """Writes (3, 3, ..., N): toes up by pitch, then headed to a yaw given by its cosine and sine."""
-    up, level = np.sin(pitch), np.cos(pitch)
-    turn[0, 0], turn[0, 1], turn[0, 2] = cosine, -sine * up, sine * level
-    turn[1, 0], turn[1, 1], turn[1, 2] = 0.0, level, up
-    turn[2, 0], turn[2, 1], turn[2, 2] = -sine, -cosine * up, cosine * level
+def _feet(yaw: Singles, pitch: Singles) -> tuple[Singles, ...]:
+    """World rotations x y z w, each (2, 2, N): toes up by pitches, then headed to a yaw.
+
+    yaw: (2, 2, N) sine and cosine of half of it.
+    """
+    up, level = np.sin(-0.5 * pitch), np.cos(0.5 * pitch)
+    return yaw[1] * up, yaw[0] * level, -yaw[0] * up, yaw[1] * level

@@ -10,16 +10,24 @@ import numpy as np
 
 from stimuli.actors import Actor
 from stimuli.blend_tree import blend_weights
+from stimuli.crowds.poses import many_transforms as planes
 from stimuli.crowds.table import Mix, Singles, WalkTable
 from stimuli.skeleton import Floats
 from stimuli.walker import drawn_pose, skin_matrices
 
 
 class Poser(Protocol):
-    """(N, 21, 3, 4) float32: bind-pose vertices -> each walker's frame, at phases (N,); `out` is where to write."""
+    """`poses.many_transforms`, in whichever way."""
 
-    def __call__(self, mix: Mix, phases: Floats, out: Singles | None = None) -> Singles:
-        """The matrices of every walker of the mix."""
+    def __call__(
+        self,
+        mix: Mix,
+        phases: Floats,
+        out: Singles | None = None,
+        sizes: Floats | None = None,
+        places: Floats | None = None,
+    ) -> Singles:
+        """The transforms of every walker's joints."""
 
 
 def accelerated() -> bool:
@@ -29,13 +37,11 @@ def accelerated() -> bool:
 
 @cache
 def poser() -> Poser:
-    """The fastest way there is; both give the same matrices within 1e-4. With numba, compiled by the first call."""
+    """The fastest way there is; both give the same within 1e-4. With numba, compiled by the first call."""
     if accelerated():
-        from stimuli.crowds.compiled_poses import many_matrices
+        from stimuli.crowds.compiled_poses import many_transforms
 
-        return many_matrices
-    from stimuli.crowds.poses import many_matrices as planes
-
+        return many_transforms
     return planes
 
 
@@ -47,6 +53,8 @@ def one_walker(actor: Actor, speed: float, step_frequency: float, phase: float) 
     """
     if not accelerated():
         return np.asarray(skin_matrices(actor, drawn_pose(actor, speed, step_frequency, phase)), np.float32)
+    from stimuli.crowds.compiled_poses import many_transforms, matrices_of_one
+
     weighted = blend_weights(actor.tree, {"speed": speed, "step_frequency": step_frequency})
     table = _table_of(actor)
     cycles = np.fromiter(weighted, np.intp, len(weighted))
@@ -63,7 +71,7 @@ def one_walker(actor: Actor, speed: float, step_frequency: float, phase: float) 
         left_strike=contacts[None, 4],
         stride=np.array([120.0 * speed / step_frequency]),
     )
-    matrices: Singles = poser()(mix, np.array([phase]))[0]
+    matrices: Singles = matrices_of_one(many_transforms(mix, np.array([phase]))[0])
     return matrices
 
 

@@ -6,6 +6,7 @@ ordered by depth, so that a thousand walkers are blended by plain sums of gather
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 
 from stimuli.blend import UPPER, CycleTable
 from stimuli.blend_tree import Tree, many_weights
+from stimuli.one_rotation import Turn, multiply
 from stimuli.retarget import Figure
 from stimuli.skeleton import JOINTS, Floats
 
@@ -33,6 +35,7 @@ DEPTH_ORDER: tuple[str, ...] = (
 
 UPPER_COUNT = len(UPPER)
 COLUMNS = 4 * UPPER_COUNT + 3
+_X_TO_DOWN: Turn = (0.0, 0.0, -math.sqrt(0.5), math.sqrt(0.5))
 PLANES = np.array([JOINTS.index(name) for name in DEPTH_ORDER])
 
 
@@ -47,7 +50,8 @@ class WalkTable:
     samples:   (cycles,) samples per cycle
     trees:     of each person, and first_cycle of each in the table
     rest:      (P, 21, 3) m, from the ground, in the rest pose, joints by depth
-    legs:      (P, 2, 23) thigh, shank (m), hip (m), thigh_rest, shank_rest as in legs.Leg
+    legs:      (P, 2, 13) thigh, shank (m), hip (m), then x y z w of the rotations that turn thigh and shank at rest
+               straight down, their hinge along +X
     soles:     (P, 5) ankle height, heel, ball, ball height, tip (m) as in contact.Sole
     """
 
@@ -102,14 +106,14 @@ class Constants:
     rest:         (3, 21, N) m, as in WalkTable
     hip:          (3, 2, N) m, from the hips to the left and the right hip joint
     bones:        (2, 2, N) m, lengths of both thighs and of both shanks, float64
-    bones_at_rest: (3, 3, 2, 2, N) thigh_rest and shank_rest as in two_bone.Leg, of both legs
+    bones_from_rest: (4, 2, 2, N) rotations of both thighs and both shanks as in WalkTable.legs
     sole:         lengths (N,) m
     """
 
     rest: Singles
     hip: Singles
     bones: Floats
-    bones_at_rest: Singles
+    bones_from_rest: Singles
     sole: Any
 
     @classmethod
@@ -120,7 +124,7 @@ class Constants:
             rest=np.ascontiguousarray(table.rest[who].transpose(2, 1, 0)),
             hip=legs[2:5],
             bones=legs[:2].astype(np.float64),
-            bones_at_rest=np.ascontiguousarray(legs[5:].reshape(2, 3, 3, 2, -1).transpose(1, 2, 0, 3, 4)),
+            bones_from_rest=np.ascontiguousarray(legs[5:].reshape(2, 4, 2, -1).swapaxes(0, 1)),
             sole=Soles(*np.ascontiguousarray(table.soles[who].T)),
         )
 
@@ -205,7 +209,8 @@ def mixed(table: WalkTable, who: Indices, speed: Floats, step_frequency: Floats)
 
 
 def _leg_row(leg: Any) -> Floats:
-    return np.concatenate([[leg.thigh, leg.shank], leg.hip, leg.thigh_rest.ravel(), leg.shank_rest.ravel()])
+    turns = [multiply(_X_TO_DOWN, leg.thigh_to_axes), multiply(_X_TO_DOWN, leg.shank_to_axes)]
+    return np.concatenate([[leg.thigh, leg.shank], leg.hip, *turns])
 
 
 def _sole_row(sole: Any) -> tuple[float, ...]:

@@ -12,7 +12,8 @@ import time
 from itertools import product
 from pathlib import Path
 
-from tests.benchmarks.crowds import drawing, graphics_card, own_work, rivals
+from tests.benchmarks.beside_others import rivals
+from tests.benchmarks.crowds import drawing, graphics_card, own_work
 from tests.benchmarks.importing import importing
 from tests.benchmarks.measuring import fastest, machine, row
 from tests.benchmarks.methods import methods

@@ -1,4 +1,4 @@
-"""How long crowds take: our own work, drawing, and the same walkers drawn by other programs in the same run.
+"""How long crowds take: our own work, and drawing.
 
 A frame is timed from the scene to the finished picture (glFinish); CPU is of all threads of the process. Times of a
 shared machine are noisy: the least disturbed tenth of the frames is printed beside the median, and CPU beside both.
@@ -6,33 +6,24 @@ shared machine are noisy: the least disturbed tenth of the frames is printed bes
 
 from __future__ import annotations
 
-import json
-import os
 import resource
-import shutil
-import subprocess
-import sys
-import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import replace
-from pathlib import Path
 from unittest.mock import patch
 
 import moderngl
 import numpy as np
 
-from experiment_app.crowds import END, drawn_crowd, plan_of
+from experiment_app.crowds import drawn_crowd
 from experiment_app.live import without_collection
-from experiment_app.render.crowd_pass import CROWD, FAR, CrowdPass
 from experiment_app.render.renderer import Renderer
-from experiment_app.render.shadow_map import ShadowMap
 from experiment_app.scene import Camera, Crowd, Ground, Scene, Walker
 from experiment_app.timing.facts import is_software
 from experiment_app.walkers import drawn_walkers
 from experiment_app.windows.offscreen import offscreen_context
-from stimuli.crowds.poses import many_matrices
+from stimuli.crowds.poses import many_transforms
 from stimuli.crowds.posing import accelerated
 from tests.benchmarks.measuring import fastest, row
 
@@ -43,10 +34,9 @@ LEVEL = 2
 
 FRAMES = 12
 RATE = 120  # frames/s that a graphics card must hold
-RIVALS = {"raylib": "raylib_crowd.py", "panda3d": "panda3d_crowd.py", "three.js": "three_crowd.mjs"}
 
 
-class _Timed(dict[str, float]):
+class Timed(dict[str, float]):
     """ms per frame: wall_p10, wall, wall_p90, cpu, poses."""
 
     def __str__(self) -> str:
@@ -56,9 +46,9 @@ class _Timed(dict[str, float]):
         )
 
 
-def _timed(
+def timed_frames(
     renderer: Renderer, target: moderngl.Framebuffer, scenes: Iterator[Scene], frames: int = FRAMES, warm: int = 3
-) -> _Timed:
+) -> Timed:
     """Frames are timed after so many that warm up, without Python's garbage collector, as in a session."""
     walls, poses = [], []
     used = 0.0
@@ -76,7 +66,7 @@ def _timed(
                 poses.append(1e3 * (posed - begun))
         cpu = 1e3 * (_used() - used) / frames
     low, middle, high = (float(value) for value in np.quantile(walls, (0.1, 0.5, 0.9)))
-    return _Timed(wall_p10=low, wall=middle, wall_p90=high, cpu=cpu, poses=float(np.median(poses)))
+    return Timed(wall_p10=low, wall=middle, wall_p90=high, cpu=cpu, poses=float(np.median(poses)))
 
 
 def _used() -> float:
@@ -84,11 +74,11 @@ def _used() -> float:
     return usage.ru_utime + usage.ru_stime
 
 
-def _crowd(size: int) -> Crowd:
+def crowd_of(size: int) -> Crowd:
     return Crowd(max(size, 2), "1:1", seed=1, seconds=3.0)
 
 
-def _walking(size: int, ground: Ground, lod: int | None) -> Iterator[Scene]:
+def walking(size: int, ground: Ground, lod: int | None) -> Iterator[Scene]:
     """A crowd frame by frame; one walker is a walker like any, seen as in a study."""
     for number in range(10**6):
         seconds = 3.0 + number / 60.0
@@ -98,7 +88,7 @@ def _walking(size: int, ground: Ground, lod: int | None) -> Iterator[Scene]:
             walker = Walker("F1", 1.2, 110.0, seconds * 110.0 / 120.0 % 1.0, 1.2 * seconds)
             yield Scene((walker,), camera, ground_of_one, lod=lod)
         else:
-            yield Scene((), CAMERA, ground, crowd=replace(_crowd(size), seconds=seconds), lod=lod)
+            yield Scene((), CAMERA, ground, crowd=replace(crowd_of(size), seconds=seconds), lod=lod)
 
 
 def own_work() -> None:
@@ -107,7 +97,7 @@ def own_work() -> None:
     context = offscreen_context()
     target = context.simple_framebuffer((16, 9))
     renderer = Renderer(context, (16, 9), 1.0, 1)
-    one, thousand = _walking(1, "open_ground", None), _walking(1000, "street", None)
+    one, thousand = walking(1, "open_ground", None), walking(1000, "street", None)
 
     def draw(scenes: Iterator[Scene] = thousand) -> None:
         scene = next(scenes)
@@ -117,7 +107,7 @@ def own_work() -> None:
     draw()
     with _without_triangles():
         row("our CPU per frame, one walker on open ground", fastest(lambda: draw(one), 7, 20), 1e-3)
-    with _without_triangles(), patch("experiment_app.crowds.poser", lambda: many_matrices):
+    with _without_triangles(), patch("experiment_app.crowds.poser", lambda: many_transforms):
         row("poses and places of 1000 unique walkers, NumPy", fastest(lambda: drawn_crowd(crowd), 7, 10), 5e-3)
         row("our CPU per frame, 1000 unique walkers in a street, NumPy", fastest(draw, 7, 10), 5e-3)
     if accelerated():
@@ -147,7 +137,7 @@ def drawing() -> None:
         target = context.simple_framebuffer(pixels)
         renderer = Renderer(context, pixels, 1.0, 1)
         for lod in (None,) if size == 1 else (None, LEVEL):
-            timed = _timed(renderer, target, _walking(size, "street", lod))
+            timed = timed_frames(renderer, target, walking(size, "street", lod))
             detail = "levels of detail" if lod is None else f"level {lod} for all"
             print(f"  {size:5} in {pixels[0]}x{pixels[1]}, {detail:18} {timed}", flush=True)
         renderer.release()
@@ -169,7 +159,7 @@ def graphics_card() -> None:
     for samples in (4,) if software else (1, 4):
         renderer = Renderer(context, pixels, 1.0, samples)
         for lod, detail in ((None, "levels of detail"), (LEVEL, f"level {LEVEL} for all")):
-            timed = _timed(renderer, target, _walking(1000, "street", lod), frames, warm=3 if software else 60)
+            timed = timed_frames(renderer, target, walking(1000, "street", lod), frames, warm=3 if software else 60)
             rate = 1e3 / timed["wall"]
             verdict = "no figure for a graphics card" if software else "kept" if rate >= RATE else "MISSED"
             print(
@@ -180,93 +170,3 @@ def graphics_card() -> None:
         renderer.release()
     target.release()
     context.release()
-
-
-def rivals() -> None:
-    """1000 walkers, the same mesh, places and camera, drawn by ours and by raylib, Panda3D and three.js if there.
-
-    GAITLAB_RIVALS names a Python that has the first two; GAITLAB_THREE a folder where `npm install three
-    puppeteer-core` was run, for Node and Chromium. They need a display, or Xvfb. On plain ground, and ours with its
-    shadows, colours, haze and one motion each; theirs with one directional light and one clip.
-    """
-    python = os.environ.get("GAITLAB_RIVALS", sys.executable)
-    with tempfile.TemporaryDirectory() as folder:
-        from tests.benchmarks.rivals.walker_file import write_walker
-
-        glb, places = Path(folder) / "walker.glb", Path(folder) / "places.json"
-        triangles = write_walker(glb, LEVEL)
-        sizes = (100, 250, 500, 1000)
-        places.write_text(json.dumps({size: _places(size) for size in sizes}), encoding="utf-8")
-        print(f"beside other programs, 1280x720, {triangles} triangles a walker:")
-        ours = {
-            "levels off": _ours(sizes, LEVEL, shadows=True),
-            "levels on": _ours(sizes, None, shadows=True),
-            "off, no shadows": _ours(sizes, LEVEL, shadows=False),
-            "on, no shadows": _ours(sizes, None, shadows=False),
-        }
-        for size in sizes:
-            for name, times in ours.items():
-                print(f"  {size:5} ours, {name:16} {times[size]}", flush=True)
-        for name, script in RIVALS.items():
-            theirs = _theirs(python, script, glb, places)
-            if theirs is None:
-                print(f"  {name} was not found; {_missing(name, python)}")
-                continue
-            for size, timed in theirs.items():
-                print(f"  {size:5} {name:22} {timed}", flush=True)
-            for kind, times in ours.items():
-                against = {key: times[1000][key] / theirs[1000][key] for key in ("wall_p10", "wall", "cpu")}
-                shares = ", ".join(f"{key} {value:.2f}" for key, value in against.items())
-                print(f"        1000 walkers, ours with {kind} over {name}: {shares}")
-
-
-def _places(size: int) -> list[tuple[float, float, float]]:
-    plan = plan_of(_crowd(size))
-    places = plan.places(3.0)
-    return [
-        (float(x), float(z) + END - plan.length, float(phase))
-        for (x, z), phase in zip(places, plan.phases(3.0), strict=True)
-    ]
-
-
-def _ours(sizes: tuple[int, ...], lod: int | None, shadows: bool) -> dict[int, _Timed]:
-    context = offscreen_context()
-    target = context.simple_framebuffer((1280, 720))
-    renderer = Renderer(context, (1280, 720), 1.0, 1)
-    with nullcontext() if shadows else _without_shadows():
-        found = {size: _timed(renderer, target, _walking(size, "plain", lod)) for size in sizes}
-    renderer.release()
-    context.release()
-    return found
-
-
-@contextmanager
-def _without_shadows() -> Iterator[None]:
-    """Nothing of shadows is left, as in the rivals: no map cleared, none drawn into it, none read by a shader."""
-    with ExitStack() as patches:
-        patches.enter_context(patch.object(ShadowMap, "begin", lambda _: None))
-        patches.enter_context(patch.object(CrowdPass, "draw_shadow", lambda *_: None))
-        for constants in (CROWD, FAR):
-            patches.enter_context(patch.dict(constants, SHADOW_TAPS="0"))
-        yield
-
-
-def _missing(name: str, python: str) -> str:
-    if name == "three.js":
-        return "set GAITLAB_THREE to a folder where `npm install three puppeteer-core` was run; needs node and chromium"
-    return f"{python} does not have it; set GAITLAB_RIVALS to a Python that has"
-
-
-def _theirs(python: str, script: str, glb: Path, places: Path) -> dict[int, _Timed] | None:
-    program = python if script.endswith(".py") else shutil.which("node")
-    if program is None:
-        return None
-    command = [program, script, str(glb), str(places), str(FRAMES)]
-    if not os.environ.get("DISPLAY") and shutil.which("xvfb-run"):
-        command = ["xvfb-run", "-a", "-s", "-screen 0 1920x1080x24 -noreset", *command]
-    folder = Path(__file__).parent / "rivals"
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    lines = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
-    return {
-        line["walkers"]: _Timed({k: line[k] for k in ("wall_p10", "wall", "cpu", "poses")}) for line in lines
-    } or None

@@ -30,9 +30,9 @@ def poses() -> None:
     who, phases = rng.integers(0, len(actors), WALKERS), rng.random(WALKERS)
     speed, step_frequency = rng.uniform(0.8, 1.2, WALKERS), rng.uniform(80.0, 120.0, WALKERS)
     mix = mixed(table, who, speed, step_frequency)
-    out = np.empty((WALKERS, 21, 3, 4), np.float32)
+    out = np.empty((WALKERS, 21, 2, 4), np.float32)
     weights = fastest(lambda: mixed(table, who, speed, step_frequency), 9, 20) / WALKERS
-    planes = fastest(lambda: crowd_poses.many_matrices(mix, phases, out), 9, 20) / WALKERS
+    planes = fastest(lambda: crowd_poses.many_transforms(mix, phases, out), 9, 20) / WALKERS
     row("one of 1000 walkers' poses, NumPy", planes, 5e-6)
     row("the same with the tree's weights made anew", planes + weights, 5e-6)
     if not crowd_posing.accelerated():
@@ -40,7 +40,7 @@ def poses() -> None:
         return
     from stimuli.crowds import compiled_poses as crowd_poses_compiled
 
-    compiled = fastest(lambda: crowd_poses_compiled.many_matrices(mix, phases, out), 9, 20) / WALKERS
+    compiled = fastest(lambda: crowd_poses_compiled.many_transforms(mix, phases, out), 9, 20) / WALKERS
     row("one of 1000 walkers' poses, numba, one thread", compiled, 1.5e-6)
     short = fastest(lambda: crowd_posing.one_walker(actor, 1.0, 87.0, 0.3), 9, 200)
     row("a walker's pose and joint matrices, numba", short, 5e-5)

@@ -9,7 +9,9 @@ import pytest
 from experiment_app.crowds import END, crowd_cast, drawn_crowd
 from experiment_app.pictures.film import condition_of, walking
 from experiment_app.render.cameras import place_camera
+from experiment_app.render.contact import BALLS, CROWD_HALF_SIZE, crowd_occluders
 from experiment_app.render.crowd_levels import BAND, HEIGHTS, levels_of, seen_instances, shadow_instances
+from experiment_app.render.drawn import PLACE
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Camera, Crowd, Scene
 from experiment_app.walkers import drawn_walkers, measured_gait
@@ -18,6 +20,8 @@ from protocols.study_file import read_study
 from stimuli.actors import load_actor
 from stimuli.blend_tree import Leaf
 from stimuli.crowds.motions import figure_of, motion_of
+from stimuli.crowds.poses import as_matrices
+from stimuli.skeleton import JOINTS
 from stimuli.walker import drawn_pose, skin_matrices
 
 SIZE = (320, 180)
@@ -45,16 +49,16 @@ def street(seconds=3.0, **changed):
 def test_everybody_is_posed_as_their_motion_says_and_stands_where_the_plan_says():
     crowd, plan = drawn_crowd(CROWD), crowd_cast(replace(CROWD, seconds=0.0)).plan
     places, phases = plan.places(3.0), plan.phases(3.0)
-    np.testing.assert_allclose(crowd.rows[:, 63, 0], places[:, 0], atol=1e-5)
-    np.testing.assert_allclose(crowd.rows[:, 63, 2], places[:, 1] + END - plan.length, atol=1e-4)
+    np.testing.assert_allclose(crowd.rows[:, PLACE, 0], places[:, 0], atol=1e-5)
+    np.testing.assert_allclose(crowd.rows[:, PLACE, 2], places[:, 1] + END - plan.length, atol=1e-4)
     for walker in range(0, CROWD.size, 7):
         motion = motion_of(plan.motions[plan.motion[walker]])
         alone = replace(load_actor("F1"), figure=figure_of(motion.style.sex), table=motion.table, tree=Leaf(0))
         speed = motion.step_length * plan.step_frequency[walker] / 60.0
         pose = drawn_pose(alone, speed, plan.step_frequency[walker], phases[walker])
         expected = plan.sizes[walker] * skin_matrices(alone, pose)
-        got = crowd.rows[walker, :63].reshape(21, 3, 4)
-        expected[..., 3] += crowd.rows[walker, 63, :3]
+        got = as_matrices(crowd.rows[walker, :PLACE].reshape(21, 2, 4))
+        expected[..., 3] += crowd.rows[walker, PLACE, :3]
         np.testing.assert_allclose(got, expected, atol=1e-4)
         moved = plan.sizes[walker] * speed
         assert moved == pytest.approx(plan.speed[walker])
@@ -65,6 +69,24 @@ def test_the_same_crowd_has_the_same_pixels_whatever_was_drawn_before():
     (alone,) = pixels(street(3.0))
     np.testing.assert_array_equal(first, again)
     np.testing.assert_array_equal(first, alone)
+
+
+def test_the_balls_that_darken_the_ground_go_with_the_joints_they_hang_on():
+    crowd = drawn_crowd(CROWD)
+    there = np.array([3, 0, 11])
+    rows = crowd_occluders(crowd, there)
+    matrices = as_matrices(crowd.rows[there, :PLACE].reshape(3, 21, 2, 4))
+    for row, walker, own in zip(rows, there, matrices, strict=True):
+        body = crowd.cast.bodies[crowd.cast.body[walker]]
+        stature = crowd.cast.statures[walker]
+        np.testing.assert_allclose(row[0], [*crowd.rows[walker, PLACE, :3], CROWD_HALF_SIZE * stature], atol=1e-6)
+        for side, balls in (("left", row[1:4]), ("right", row[4:7])):
+            for ball, number in zip(balls, (1, 3, 6), strict=True):
+                part, offset, radius = BALLS[number]
+                joint = JOINTS.index(side + part)
+                at = body.skeleton.positions[joint] + np.array(offset) * body.stature
+                np.testing.assert_allclose(ball[:3], own[joint] @ np.append(at, 1.0), atol=1e-4)
+                assert ball[3] == pytest.approx(radius * stature, rel=1e-6)
 
 
 def test_a_crowd_casts_shadows_and_touches_the_ground():
@@ -92,7 +114,7 @@ def test_the_part_map_knows_the_walkers_of_a_crowd():
     viewpoint = place_camera(CAMERA, SIZE[0] / SIZE[1], 1.7, (0.0, 0.0, 0.0))
     found = 0
     (crowd,) = drawn
-    for walker, (place, stature) in enumerate(zip(crowd.rows[:, 63, :3], crowd.cast.statures, strict=True)):
+    for walker, (place, stature) in enumerate(zip(crowd.rows[:, PLACE, :3], crowd.cast.statures, strict=True)):
         clip = viewpoint.matrix @ np.append(place + np.array([0.0, 0.75 * stature, 0.0]), 1.0)
         x, y = (0.5 + 0.5 * clip[0] / clip[3]) * SIZE[0], (0.5 - 0.5 * clip[1] / clip[3]) * SIZE[1]
         part = parts.at(x, y)

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import moderngl
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
+from experiment_app.crowds import drawn_crowd
 from experiment_app.render.body_buffers import LIT_FORMAT, LIT_NAMES, packed
+from experiment_app.render.drawn import PLACE
 from experiment_app.render.light import LIGHTS, fit_sunlight
 from experiment_app.render.picture import Picture
 from experiment_app.render.programs import shader_text
 from experiment_app.render.treadmill_model import BELT_WIDTH, FLOOR, treadmill
-from experiment_app.scene import Scene, Walker
+from experiment_app.scene import Crowd, Scene, Walker
 from experiment_app.walkers import drawn_walkers
+from stimuli.bodies.body import Surface
 from stimuli.bodies.skinning import skin
 
 CAPTURE = """
@@ -44,25 +49,53 @@ def test_skinning_on_the_gpu_is_skinning_in_numpy(context: moderngl.Context) -> 
         row[:63] = walker.matrices.reshape(63, 4)
         row[63, :3] = walker.place
 
-    program = context.program(
-        vertex_shader="#version 330 core\n" + shader_text("skinning.glsl") + CAPTURE, varyings=["skinned", "turned"]
-    )
-    poses = context.texture((64, 2), 4, rows.tobytes(), dtype="f4")
+    got = _skinned(context, vertices, rows, crowd=False)
+    for one, walker in zip(got, drawn, strict=True):
+        _assert_skinned(one, surfaces, walker.matrices, walker.place)
+
+
+def test_skinning_a_crowd_on_the_gpu_is_skinning_in_numpy(context: moderngl.Context) -> None:
+    """A crowd's quaternions against the matrices of each walker alone, at a size that is not 1.
+
+    Positions within 0.02 mm: they are 100 m from the origin, where a float32 has steps of 0.008 mm.
+    """
+    crowd = drawn_crowd(Crowd(30, "1:1", seed=4, seconds=2.0))
+    own = np.flatnonzero(crowd.cast.body == crowd.cast.body[5])[:2]
+    assert np.abs(np.linalg.norm(crowd.rows[own, 0], axis=1) - 1.0).min() > 1e-3
+    surfaces = crowd.cast.bodies[crowd.cast.body[5]].levels[1]
+    vertices, _ = packed(surfaces)
+    got = _skinned(context, vertices, crowd.rows[own], crowd=True)
+    for one, row in zip(got, crowd.rows[own], strict=True):
+        turn = Rotation.from_quat(row[:PLACE:2]).as_matrix() * np.sum(row[:PLACE:2] ** 2, axis=1)[:, None, None]
+        _assert_skinned(one, surfaces, np.dstack([turn, row[1:PLACE:2, :3]]), np.zeros(3), within=2e-5)
+
+
+def _skinned(context: moderngl.Context, vertices: np.ndarray, rows: np.ndarray, crowd: bool) -> np.ndarray:
+    """(2, V, 2, 3): positions and turned normals, of any length, of two rows of poses."""
+    lines = ["#version 330 core", *(["#define CROWD 1"] if crowd else []), shader_text("skinning.glsl"), CAPTURE]
+    program = context.program(vertex_shader="\n".join(lines), varyings=["skinned", "turned"])
+    poses = context.texture((rows.shape[1], 2), 4, np.ascontiguousarray(rows).tobytes(), dtype="f4")
     poses.use(0)
-    buffer = context.buffer(vertices.tobytes())
-    array = context.vertex_array(program, [(buffer, LIT_FORMAT, *LIT_NAMES)])
+    content: list[tuple[object, ...]] = [(context.buffer(vertices.tobytes()), LIT_FORMAT, *LIT_NAMES)]
+    if crowd:
+        instances = np.array([[0, 0, 1, 0], [1, 0, 1, 0]], np.float32)
+        content.append((context.buffer(instances.tobytes()), "4f4/i", "instance"))
+    array = context.vertex_array(program, content)
     result = context.buffer(reserve=2 * len(vertices) * 24)
     context.simple_framebuffer((4, 4)).use()  # without a window nothing runs unless some framebuffer is bound
     array.transform(result, moderngl.POINTS, vertices=len(vertices), instances=2)
-    got = np.frombuffer(result.read(), np.float32).reshape(2, len(vertices), 2, 3)
+    return np.frombuffer(result.read(), np.float32).reshape(2, len(vertices), 2, 3)
 
-    for one, walker in zip(got, drawn, strict=True):
-        expected = [skin(surface, walker.matrices) for surface in surfaces]
-        positions = np.concatenate([part[0] for part in expected]) + walker.place
-        normals = np.concatenate([part[1] for part in expected])
-        turned = one[:, 1] / np.linalg.norm(one[:, 1], axis=1, keepdims=True)
-        assert np.abs(one[:, 0] - positions).max() < 1e-5
-        assert np.abs(turned - normals).max() < 1e-5
+
+def _assert_skinned(
+    one: np.ndarray, surfaces: tuple[Surface, ...], matrices: np.ndarray, place: Sequence[float], within: float = 1e-5
+) -> None:
+    expected = [skin(surface, matrices) for surface in surfaces]
+    positions = np.concatenate([part[0] for part in expected]) + place
+    normals = np.concatenate([part[1] for part in expected])
+    turned = one[:, 1] / np.linalg.norm(one[:, 1], axis=1, keepdims=True)
+    assert np.abs(one[:, 0] - positions).max() < within
+    assert np.abs(turned - normals).max() < 1e-5
 
 
 @pytest.mark.parametrize("samples", [1, 4])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from stimuli.actors import load_actor
 from stimuli.blend_tree import Branch, CoverageError, Leaf, blend_weights, many_weights
@@ -34,12 +35,12 @@ ways = pytest.mark.parametrize(
 )
 
 
-def many_matrices(way):
+def many_transforms(way):
     if way == "planes":
-        return crowd_poses.many_matrices
+        return crowd_poses.many_transforms
     from stimuli.crowds import compiled_poses as crowd_poses_compiled
 
-    return crowd_poses_compiled.many_matrices
+    return crowd_poses_compiled.many_transforms
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +84,7 @@ walks = st.lists(
 def test_a_crowd_is_posed_as_each_of_its_walkers_alone(people, way, walks):
     actors, table = people
     who, speed, frequency, phase = (np.array(column) for column in zip(*walks, strict=True))
-    together = many_matrices(way)(mixed(table, who, speed, frequency), phase)
+    together = crowd_poses.as_matrices(many_transforms(way)(mixed(table, who, speed, frequency), phase))
     for matrices, walk in zip(together, walks, strict=True):
         actor = actors[walk[0]]
         alone = skin_matrices(actor, drawn_pose(actor, *walk[1:]))
@@ -97,8 +98,8 @@ def test_who_walks_beside_does_not_matter(people, way):
     who, phase = rng.integers(0, 8, 50), rng.random(50)
     mix = mixed(table, who, rng.uniform(0.8, 1.2, 50), rng.uniform(80.0, 120.0, 50))
     order = rng.permutation(50)
-    whole = many_matrices(way)(mix, phase)
-    shuffled = many_matrices(way)(mix.part(order), phase[order])
+    whole = many_transforms(way)(mix, phase)
+    shuffled = many_transforms(way)(mix.part(order), phase[order])
     np.testing.assert_allclose(shuffled, whole[order], atol=2e-6)
 
 
@@ -106,10 +107,31 @@ def test_who_walks_beside_does_not_matter(people, way):
 def test_poses_are_written_into_a_part_of_a_larger_array(people, way):
     _, table = people
     mix = mixed(table, np.array([0, 3]), np.array([1.0, 1.1]), np.array([90.0, 101.0]))
-    rows = np.full((2, 64, 4), 7.0, np.float32)
-    many_matrices(way)(mix, np.array([0.1, 0.6]), rows[:, :63].reshape(2, 21, 3, 4))
-    np.testing.assert_array_equal(rows[:, :63].reshape(2, 21, 3, 4), many_matrices(way)(mix, np.array([0.1, 0.6])))
-    assert (rows[:, 63] == 7.0).all()
+    rows = np.full((2, 43, 4), 7.0, np.float32)
+    many_transforms(way)(mix, np.array([0.1, 0.6]), rows[:, :42].reshape(2, 21, 2, 4))
+    np.testing.assert_array_equal(rows[:, :42].reshape(2, 21, 2, 4), many_transforms(way)(mix, np.array([0.1, 0.6])))
+    assert (rows[:, 42] == 7.0).all()
+
+
+@ways
+def test_walkers_are_made_larger_and_put_on_their_places(people, way):
+    _, table = people
+    mix = mixed(table, np.array([1, 4]), np.array([1.0, 1.1]), np.array([90.0, 101.0]))
+    phase, sizes, places = np.array([0.1, 0.6]), np.array([0.9, 1.1]), np.array([[3.0, -7.0], [0.5, 20.0]])
+    expected = sizes[:, None, None, None] * crowd_poses.as_matrices(many_transforms(way)(mix, phase))
+    expected[:, :, 0, 3] += places[:, :1]
+    expected[:, :, 2, 3] += places[:, 1:]
+    got = crowd_poses.as_matrices(many_transforms(way)(mix, phase, None, sizes, places))
+    np.testing.assert_allclose(got, expected, atol=5e-6)
+
+
+@given(st.lists(st.floats(-2.0, 2.0), min_size=4, max_size=4).filter(lambda q: np.linalg.norm(q) > 0.1))
+def test_a_quaternion_s_matrix_turns_and_makes_larger_by_its_squared_length(rotation):
+    transforms = np.array([rotation, [1.0, 2.0, 3.0, 0.0]], np.float32)
+    expected = Rotation.from_quat(rotation).as_matrix() * np.dot(rotation, rotation)
+    matrices = crowd_poses.as_matrices(transforms)
+    np.testing.assert_allclose(matrices[:, :3], expected, atol=2e-5)
+    np.testing.assert_array_equal(matrices[:, 3], [1.0, 2.0, 3.0])
 
 
 def test_one_walker_is_the_same_by_the_short_way():
