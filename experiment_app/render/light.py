@@ -33,7 +33,7 @@ ON_WALKERS = {**CONSTANTS, "BLOCKER_TAPS": "8", "SHADOW_TAPS": "14"}
 """Fewer taps: shadows on clothes and skin are small and among folds, and triangles there are many."""
 
 ON_CROWDS = {**CONSTANTS, "SHADOW_OFFSET": "0.03", "SHARPEST": "0.03", "BLOCKER_TAPS": "0", "SHADOW_TAPS": "4"} | {
-    "HAZE_REACH": "95.0"  # m; clearer air, so that all of a crowd is seen
+    "HAZE_REACH": "160.0"  # m; clearer air, so that the colours of all of a crowd are seen
 }
 """One soft edge for all: the map covers a whole street, so its texels are some centimetres."""
 
