@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from protocols.gaze import REGIONS
+from protocols.mistakes.measure_ranges import unreachable
 from protocols.mistakes.mistake import Mistake, Place, no_such
 from protocols.mistakes.planned_tests import Columns, anova_factor_mistakes, test_mistakes
 from protocols.mistakes.possible import Possible, Span, condition_mistakes
@@ -28,6 +29,8 @@ def analysis_mistakes(study: Study) -> Iterator[Mistake]:
         yield from _factors_of_tests(study, plan, at)
         within, columns = within_factors(study, plan), columns_of(study, plan)
         yield from test_mistakes(study, plan, at, within, columns)
+        if (span := {**study.task.ranges, GAZE_SHARE: Span(0.0, 100.0)}.get(plan.measure)) is not None:
+            yield from unreachable(plan, at, within, span)
         yield from _equivalence_and_regression(study, plan, at)
         yield from _figures(study, plan, at)
         for i, test in enumerate(plan.t_tests):

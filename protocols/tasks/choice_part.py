@@ -53,6 +53,11 @@ class Choice(PairPart):
         return columns | ({"decision_time": Span()} if apart else {}) | {"views": self.seen}
 
     @property
+    def ranges(self) -> dict[str, Span]:
+        """Confusion in percent, correct answers as a share."""
+        return {**super().ranges, "confusion_rate": Span(0.0, 100.0), "correct": Span(0.0, 1.0)}
+
+    @property
     def key_part(self) -> TaskKeys:
         """The task's keys."""
         return self.keys

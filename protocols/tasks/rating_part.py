@@ -67,6 +67,11 @@ class Rating(PairPart):
         return {"rating": Span(self.scale.minimum, self.scale.maximum, self.scale.step), "views": self.seen}
 
     @property
+    def ranges(self) -> dict[str, Span]:
+        """A rating lies on its scale."""
+        return {**super().ranges, "rating": Span(self.scale.minimum, self.scale.maximum)}
+
+    @property
     def key_part(self) -> TaskKeys:
         """The task's keys."""
         return self.keys

@@ -52,6 +52,11 @@ class TaskPart(SettingsPart):
         return dict.fromkeys(self.responses, Span())
 
     @property
+    def ranges(self) -> Mapping[str, Span]:
+        """Measures to the numbers that each can be in a trial of this study."""
+        return dict.fromkeys(self.measures, Span())
+
+    @property
     def asked(self) -> str:
         """The question under the walks, "" for none."""
         return ""
