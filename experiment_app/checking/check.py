@@ -6,9 +6,8 @@ import json
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 
-from experiment_app.checking.balance import balance, likely_seed, order_in_words
+from experiment_app.checking.balance import balance, order_in_words
 from experiment_app.checking.coverage import coverage_mistakes
 from experiment_app.checking.slides import sliding_bodies
 from protocols.mistakes.consistency import inconsistencies, referred_factors, settings_of
@@ -232,51 +231,6 @@ def _strip(study: Study) -> list[str]:
             marks = "".join(" .:*#"[min(at[b], 4)] for b in range(bins))
             lines.append(f"  {factor:>{name}} {level!s:<{wide}}|{marks}| {sum(at.values())} trials")
     return lines
-
-
-def design_picture(file: StudyFile, path: Path) -> None:
-    """A PNG of the design's balance: the level shown in each trial of the first participants, and the counts."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
-    import numpy as np
-
-    study = file.study
-    people = min(study.participants.planned, 12)
-    placed = study.order.placed_factor
-    factors = {name: levels for name, levels in study.factors.items() if name != placed} or study.factors
-    orders = [make_trials(study, likely_seed(study, number), number) for number in range(1, people + 1)]
-    figure, axes = plt.subplots(
-        len(factors),
-        2,
-        figsize=(13, 2.2 + 1.6 * len(factors)),
-        width_ratios=(5, 1),
-        squeeze=False,
-    )
-    for (factor, levels), (left, right) in zip(factors.items(), axes, strict=True):
-        grid = np.array([[levels.index(t.levels[factor]) for t in order] for order in orders])
-        colours = plt.get_cmap("viridis", len(levels))
-        left.imshow(grid, aspect="auto", cmap=colours, vmin=-0.5, vmax=len(levels) - 0.5, interpolation="nearest")
-        left.set_ylabel("participant")
-        left.set_yticks(range(people), [str(i + 1) for i in range(people)], fontsize=7)
-        left.set_title(factor, loc="left", fontweight="bold")
-        first, second = grid[:, : grid.shape[1] // 2], grid[:, grid.shape[1] // 2 :]
-        for i, level in enumerate(levels):
-            counts = (first == i).sum(), (second == i).sum()
-            right.barh(i, counts[0], color=colours(i), alpha=0.65)
-            right.barh(i, counts[1], left=counts[0], color=colours(i))
-            right.text(sum(counts), i, f" {level}", va="center", fontsize=9)
-        right.set_yticks([])
-        right.invert_yaxis()
-        right.spines[["top", "right"]].set_visible(False)
-        right.set_title("trials: first | second half", fontsize=9, loc="left")
-        right.margins(x=0.25)
-    axes[-1, 0].set_xlabel("trial")
-    figure.suptitle(f"{study.title}: the order of the first {people} participants", x=0.01, ha="left")
-    figure.tight_layout()
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
 
 
 def schema_text() -> str:

@@ -59,7 +59,8 @@ def check(
 ) -> int:
     """Check a study file: every mistake with its line, the number of trials, how long it takes, the balance."""
     from experiment_app.checking.balance import what_participant_sees
-    from experiment_app.checking.check import checked_study, design_picture, notes_on, summary
+    from experiment_app.checking.check import checked_study, notes_on, summary
+    from experiment_app.checking.design_picture import write_design_picture
 
     require_ending("--picture", picture, "the picture is a PNG", "balance.png")
     if participant_number is not None and participant_number < 1:
@@ -73,7 +74,7 @@ def check(
         for line in ["", *what_participant_sees(file.study, participant_number, seed)]:
             out.print(line, markup=False)
     if picture is not None:
-        design_picture(file, picture)
+        write_design_picture(file.study, picture)
         out.print(f"Picture of the balance: {picture}", markup=False)
     return 0
 

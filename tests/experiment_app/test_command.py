@@ -10,12 +10,15 @@ from pathlib import Path
 
 import pytest
 
+from experiment_app.checking.balance import likely_seed
 from experiment_app.checking.check import expected_minutes
+from experiment_app.checking.design_picture import design_picture
 from experiment_app.command import app, run
+from protocols.orders.design import make_trials
 from protocols.plan import make_plan
 from protocols.study_file import read_study
 from tests.experiment_app.sessions import opened, play
-from tests.protocols.studies import changed
+from tests.protocols.studies import changed, short
 
 COMMANDS = tuple(name for name in app if not name.startswith("-"))
 
@@ -111,6 +114,18 @@ def test_check_draws_the_balance(tmp_path, capfd):
 
     assert run(["check", "walk_ratio", "--picture", str(tmp_path / "balance.png")]) == 0
     assert Image.open(tmp_path / "balance.png").size[0] > 1000
+
+
+def test_the_picture_of_the_balance_numbers_trials_and_participants_from_1():
+    study = short().study
+    drawn = design_picture(study).axes[0]
+    (image,) = drawn.get_images()
+    assert image.get_extent() == [0.5, 4.5, 12.5, 0.5]  # trial n of participant m stands around (n, m)
+    low, high = drawn.get_xlim()
+    assert [tick for tick in drawn.get_xticks() if low <= tick <= high] == [1, 2, 3, 4]
+    assert list(drawn.get_yticks()) == list(range(1, 13))
+    first = [study.factors["actor"].index(t.levels["actor"]) for t in make_trials(study, likely_seed(study, 1))]
+    assert list(image.get_array()[0]) == first
 
 
 @pytest.mark.parametrize(
