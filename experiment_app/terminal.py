@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+import sys
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
@@ -27,11 +29,13 @@ class ShowProgress(Protocol):
 
 
 def typed(path: object) -> str:
-    """A path as it is typed in a command: in quotes where a blank or a sign would part it, for sh and Windows alike.
+    """A path as it is typed in a command: so that no blank parts it and no shell takes a sign of it, as $, for its own.
 
-    With ./ before a dash, which would make it an option.
+    With ./ before a dash, which would make it an option. On Windows in double quotes, which all its shells know.
     """
     text = f"./{path}" if str(path).startswith("-") else str(path)
+    if sys.platform != "win32":
+        return shlex.quote(text)
     plain = all(sign.isalnum() or sign in "-_./\\:+,@%=~" for sign in text)
     return text if plain else f'"{text}"'
 

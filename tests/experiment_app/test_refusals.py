@@ -1,6 +1,9 @@
 """What a careless hand gets: one sentence with the place and the way out, the right status, nothing overwritten."""
 
+import shlex
 import shutil
+import subprocess
+import sys
 from fractions import Fraction
 
 import pytest
@@ -11,6 +14,7 @@ from experiment_app.errors import UsageError
 from experiment_app.opening import open_new
 from experiment_app.pictures.film import write_film
 from experiment_app.run_folder import participant_runs
+from experiment_app.terminal import typed
 from stimuli.methods.errors import MethodError
 from stimuli.methods.styles import default_styles, store_style
 from tests.experiment_app.sessions import opened, play
@@ -136,13 +140,29 @@ def test_a_film_that_cannot_be_written_is_refused_before_anything_is_drawn(tmp_p
         write_film(iter(()), Fraction(60), tmp_path / name)
 
 
-def test_commands_that_are_told_can_be_typed_whatever_is_in_their_paths(tmp_path, capfd):
-    study, data = tmp_path / "my studies" / "my study.yaml", tmp_path / "my däta"
+@pytest.mark.parametrize(
+    "folder", ["my studies", "$HOME", "`date`", "it's", 'a "b"', "däta & more; #2 (old)", "~", "a!b*"]
+)
+def test_commands_that_are_told_can_be_typed_whatever_is_in_their_paths(tmp_path, capfd, folder):
+    study = tmp_path / folder / "my study.yaml"
     study.parent.mkdir()
     assert run(["copy", "walk_ratio", str(study)]) == 0
-    assert f'gaitlab check "{study}"' in " ".join(capfd.readouterr().out.split())
+    told = capfd.readouterr().out.split("then: gaitlab check ")[1].rstrip("\n")
+    heard = subprocess.run(["sh", "-c", f"printf %s {told}"], capture_output=True, text=True, cwd=tmp_path, check=True)
+    assert heard.stdout == str(study)
+
+
+def test_on_windows_a_told_path_is_in_double_quotes_where_a_blank_would_part_it(monkeypatch):
+    monkeypatch.setattr(sys, "platform", "win32")
+    assert typed(r"C:\Users\anna\study.yaml") == r"C:\Users\anna\study.yaml"
+    assert typed(r"C:\my studies\study.yaml") == r'"C:\my studies\study.yaml"'
+
+
+def test_the_command_that_analyses_simulated_participants_can_be_typed_whatever_the_folder(tmp_path, capfd):
+    data = tmp_path / "my $data"
     assert run(["simulate", "walk_ratio", "--participants", "1", "--data", str(data)]) == 0
-    assert f'gaitlab analyse "{data / "walk_ratio"}"' in " ".join(capfd.readouterr().out.split())
+    told = " ".join(capfd.readouterr().out.split()).split("Analyse them with: gaitlab ")[1]
+    assert shlex.split(told)[1] == str(data / "walk_ratio")
 
 
 def test_a_told_command_with_a_folder_that_begins_with_a_dash_can_be_typed(tmp_path, monkeypatch, capfd):
