@@ -139,7 +139,7 @@ def _provenance(study: Study) -> dict[str, str]:
     from stimuli.methods.styles import style_named
 
     walks = [walk for walk in shown_walks(study) if walk.crowd is None]
-    actors = {walk.actor: provenance_of(walk.actor) for walk in walks}
+    actors = {name: provenance_of(name) for name in {walk.actor for walk in walks}}
     styles = {walk.making.style for walk in walks if walk.making.style is not None}
     return dict(sorted(actors.items())) | {f"style {name}": style_named(name).provenance for name in sorted(styles)}
 

@@ -64,6 +64,20 @@ class StoredActor:
         return tuple(cycle for _, row in self.rows for cycle in row)
 
     @property
+    def tree(self) -> Tree:
+        """Which cycles give a speed and a step frequency."""
+        branches: list[Branch] = []
+        first = 0
+        for _, row in self.rows:
+            leaves = tuple(Leaf(first + index) for index in range(len(row)))
+            follows = tuple(cycle.step_frequency for cycle in row) if self.follows else ()
+            branches.append(Branch("speed", "m/s", tuple(cycle.speed for cycle in row), leaves, follows))
+            first += len(row)
+        if self.follows:
+            return branches[0]
+        return Branch("step_frequency", "steps/min", tuple(frequency for frequency, _ in self.rows), tuple(branches))
+
+    @property
     def provenance(self) -> str:
         """How many cycles are captured and modelled, the licence and the source, for pages and journals."""
         captured = sum(bool(cycle.files) for cycle in self.cycles)
@@ -151,20 +165,7 @@ def actor_of(stored_actor: StoredActor, body: Body | None = None) -> Actor:
     cycles = [
         walk_cycle(figure, cycle.walk, cycle.speed, cycle.step_frequency, calm=True) for cycle in stored_actor.cycles
     ]
-    return actor_on(worn, person, figure, cycles, _tree(stored_actor), stored_actor.provenance)
-
-
-def _tree(actor: StoredActor) -> Tree:
-    branches: list[Branch] = []
-    first = 0
-    for _, row in actor.rows:
-        leaves = tuple(Leaf(first + index) for index in range(len(row)))
-        follows = tuple(cycle.step_frequency for cycle in row) if actor.follows else ()
-        branches.append(Branch("speed", "m/s", tuple(cycle.speed for cycle in row), leaves, follows))
-        first += len(row)
-    if actor.follows:
-        return branches[0]
-    return Branch("step_frequency", "steps/min", tuple(frequency for frequency, _ in actor.rows), tuple(branches))
+    return actor_on(worn, person, figure, cycles, stored_actor.tree, stored_actor.provenance)
 
 
 def _about(actor: StoredActor) -> dict[str, Any]:

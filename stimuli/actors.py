@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache
 from importlib.resources import files
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,6 +27,9 @@ from stimuli.bodies.known import load_body
 from stimuli.gait_model import SIGNALS, GaitModel, Step, WalkCurves, load_gait_model
 from stimuli.retarget import Figure, scaled, walk_cycle
 from stimuli.skeleton import Floats, Skeleton
+
+if TYPE_CHECKING:
+    from stimuli.actor_library import StoredActor
 
 METRONOME = (80.0, 90.0, 100.0, 110.0, 120.0)
 """Step frequencies of the cycles, steps/min, as imposed in Niay (2022, section 3.1.1)."""
@@ -133,36 +137,45 @@ def load_actor(name: str, body: Body | None = None) -> Actor:
 
     Default actors on their own body are cached. Raises ActorError for a name that is not known.
     """
-    from stimuli.actor_library import actor_of, imported_names, read_stored
+    from stimuli.actor_library import actor_of
 
-    if name in imported_names():
-        return actor_of(read_stored(name), body)
-    if name not in people():
-        near = get_close_matches(name.upper(), actor_names(), n=1, cutoff=0.5)
-        hint = f" Did you mean {near[0]}?" if near else ""
-        raise ActorError(f"There is no actor {name!r}.{hint} The actors are {', '.join(actor_names())}.")
+    stored = _stored(name)
+    if stored is not None:
+        return actor_of(stored, body)
     if body is None:
         return _default_actor(name)
     return _make(people()[name], body)
 
 
 def tree_of(name: str) -> Tree:
-    """The blend tree of an actor, which says what the actor covers; a default actor's cycles need not be made for it.
+    """The blend tree of an actor, which says what the actor covers; no cycle is made for it.
 
     Raises ActorError for a name that is not known.
     """
-    return metronome_tree(METRONOME, CYCLE_SPEEDS) if _is_default(name) else load_actor(name).tree
+    stored = _stored(name)
+    return metronome_tree(METRONOME, CYCLE_SPEEDS) if stored is None else stored.tree
 
 
 def provenance_of(name: str) -> str:
     """Where an actor's walk comes from, as `Actor.provenance`; raises ActorError for a name that is not known."""
-    return MODELLED if _is_default(name) else load_actor(name).provenance
+    stored = _stored(name)
+    return MODELLED if stored is None else stored.provenance
 
 
-def _is_default(name: str) -> bool:
-    from stimuli.actor_library import imported_names
+def _stored(name: str) -> StoredActor | None:
+    """An imported actor as the library has it, None for a default one; raises ActorError for a name that is not known.
 
-    return name in people() and name not in imported_names()
+    What needs no poses asks this: making an imported actor's cycles takes half a second.
+    """
+    from stimuli.actor_library import imported_names, read_stored
+
+    if name in imported_names():
+        return read_stored(name)
+    if name not in people():
+        near = get_close_matches(name.upper(), actor_names(), n=1, cutoff=0.5)
+        hint = f" Did you mean {near[0]}?" if near else ""
+        raise ActorError(f"There is no actor {name!r}.{hint} The actors are {', '.join(actor_names())}.")
+    return None
 
 
 def actor_on(

@@ -102,6 +102,19 @@ def test_an_imported_actor_is_known_wherever_default_ones_are(tmp_path, monkeypa
     assert load_actor("anna").height == 1.7
 
 
+def test_what_an_imported_actor_covers_and_comes_from_is_known_without_making_its_walks(tmp_path, monkeypatch):
+    from stimuli.actors import load_actor, provenance_of, tree_of
+
+    monkeypatch.setenv("GAITLAB_ACTORS", str(tmp_path))
+    stored(actor(), tmp_path)
+    walking = load_actor("anna")
+    monkeypatch.setattr("stimuli.actor_library.walk_cycle", lambda *_, **__: pytest.fail("a walk was made"))
+    assert tree_of("anna") == walking.tree
+    assert provenance_of("anna") == walking.provenance
+    with pytest.raises(ActorError, match="no actor 'annna'"):
+        provenance_of("annna")
+
+
 def test_a_library_that_cannot_be_written_is_named_with_the_way_out(tmp_path, monkeypatch):
     (tmp_path / "home").write_text("a file where a folder should be")
     monkeypatch.setenv("GAITLAB_ACTORS", str(tmp_path / "home" / "actors"))
