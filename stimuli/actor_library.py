@@ -21,6 +21,7 @@ from stimuli.actors import Actor, ActorError, Person, actor_on, people
 from stimuli.blend_tree import Branch, Leaf, Tree
 from stimuli.bodies.body import Body
 from stimuli.bodies.known import load_body
+from stimuli.file_names import why_no_file
 from stimuli.gait import Gait
 from stimuli.gait_model import COEFFICIENTS, SIGNALS, WalkCurves
 from stimuli.retarget import Figure, scaled, walk_cycle
@@ -111,6 +112,8 @@ def check_name(name: str, library: Path | None = None, replace: bool = False) ->
     """Raises ActorError if a new actor cannot have this name."""
     if not NAME.fullmatch(name):
         raise ActorError(f"{name!r} is no name for an actor; use letters, digits, - and _, as lab7_anna")
+    if why := why_no_file(name):
+        raise ActorError(why)
     if name in people():
         raise ActorError(f"{name} is a default actor; choose another name")
     if not replace and name in imported_names(library):

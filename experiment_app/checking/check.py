@@ -30,7 +30,7 @@ READING_SPEED = 200.0
 def checked_study(study: str) -> StudyFile:
     """The study of a file or shipped name; raises StudyFileError with every mistake at once, also in names."""
     file = read_study(study)
-    refuse_mistakes(file, [*inconsistencies(file.study), *check_names(file)])
+    refuse_mistakes(file, [*_no_folder(file.study), *inconsistencies(file.study), *check_names(file)])
     refuse_mistakes(file, list(coverage_mistakes(file.study)))
     return file
 
@@ -39,6 +39,14 @@ def refuse_mistakes(file: StudyFile, mistakes: Sequence[Mistake]) -> None:
     """Raises StudyFileError when there are mistakes."""
     if mistakes:
         raise file.error(mistakes)
+
+
+def _no_folder(study: Study) -> Iterator[Mistake]:
+    """A name that the folder of the data cannot have."""
+    from stimuli.file_names import why_no_file
+
+    if why := why_no_file(study.study):
+        yield Mistake(("study",), why)
 
 
 def check_names(file: StudyFile) -> list[Mistake]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from stimuli.bodies.point_light import FIGURES
 from stimuli.body_files.errors import BodyError
+from stimuli.file_names import why_no_file
 from stimuli.user_folder import make_user_folder, user_folder
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
@@ -44,6 +45,8 @@ def stored(data: bytes, name: str, replace: bool = False) -> Path:
     """Writes the bytes of a GLB file into the library, whole or not at all, and returns the file."""
     if not NAME.fullmatch(name):
         raise BodyError(f"{name!r} is no name for a body; use letters, digits, - and _, as lab7_anna")
+    if why := why_no_file(name):
+        raise BodyError(why)
     if name in TAKEN:
         raise BodyError(f"{name} comes with gaitlab; choose another name")
     if not replace and name in imported_names():

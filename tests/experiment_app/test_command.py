@@ -133,6 +133,7 @@ def test_the_picture_of_the_balance_numbers_trials_and_participants_from_1():
     [
         ("actor: [F1, F2, M1, M2] ", "actor: [F1, F2, M1, M99] ", "there is no actor M99"),
         ("{actor: T2,", "{actor: T9,", "there is no actor T9"),
+        ("study: walk_ratio", "study: Con", "study: Con is what Windows calls a device, so no file there"),
         ("ground: open_ground", "ground: open_ground\n  body: womn", "did you mean woman?"),
         ("[0.8, 1.0, 1.2]", "[0.2, 1.0, 2.9]", "2.9"),
         ("rate: 10 ", "rte: 10 ", "did you mean rate?"),

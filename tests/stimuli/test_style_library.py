@@ -56,6 +56,7 @@ def test_a_style_is_replaced_only_when_asked():
         ("../sad", "is no name for a new style"),
         ("", "is no name for a new style"),
         ("1st", "is no name for a new style"),
+        ("con", "con is what Windows calls a device, so no file there can have this name; choose another"),
     ],
 )
 def test_a_name_it_cannot_have_is_refused(name, reason):
