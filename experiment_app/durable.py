@@ -1,27 +1,10 @@
-"""Forces what was written onto the disk itself, so that it is there after a power cut."""
+"""Forces the names in a folder onto the disk itself, so that its files are found after a power cut."""
 
 from __future__ import annotations
 
 import errno
-import importlib
 import os
-import sys
 from pathlib import Path
-
-
-def force_file(descriptor: int) -> None:
-    """Returns when an open file is on the disk.
-
-    On macOS fsync leaves it in the drive's own cache; there F_FULLFSYNC is asked first, which some network disks lack.
-    """
-    if sys.platform == "darwin":  # pragma: no cover - exercised on macOS only
-        fcntl = importlib.import_module("fcntl")
-        try:
-            fcntl.fcntl(descriptor, fcntl.F_FULLFSYNC)
-            return
-        except OSError:
-            pass
-    os.fsync(descriptor)
 
 
 def force_folder(folder: Path) -> None:

@@ -15,10 +15,11 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import IO
 
-from experiment_app.durable import force_file, force_folder
+from experiment_app.durable import force_folder
 from experiment_app.errors import RunError, UsageError
 from experiment_app.run_folder import Run, journal_lines, journal_text, lock
 from protocols.record import Ended, Header, Record, TrialRecord, checksum_of, encode_line
+from stimuli.whole_file import force_file
 
 DURABLE = (Header, TrialRecord, Ended)
 """Records after which the file is forced to the disk."""

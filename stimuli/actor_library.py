@@ -7,9 +7,7 @@ from, so that an actor can be put on any body. The folder is that of the user's 
 from __future__ import annotations
 
 import json
-import os
 import re
-import tempfile
 import zipfile
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -27,6 +25,7 @@ from stimuli.gait_model import COEFFICIENTS, SIGNALS, WalkCurves
 from stimuli.retarget import Figure, scaled, walk_cycle
 from stimuli.skeleton import Floats
 from stimuli.user_folder import make_user_folder, user_folder
+from stimuli.whole_file import whole_file
 
 VERSION = 2
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
@@ -134,16 +133,8 @@ def stored(actor: StoredActor, library: Path | None = None) -> Path:
 def write_whole(path: Path, **arrays: Any) -> None:
     """Writes arrays into an npz file that is there whole or not at all, even if the power fails."""
     make_user_folder(path.parent, "actors")
-    handle, temporary = tempfile.mkstemp(prefix=".", suffix=".part", dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            np.savez_compressed(stream, **arrays)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    with whole_file(path) as stream:
+        np.savez_compressed(stream, **arrays)
 
 
 def read_stored(name: str, library: Path | None = None) -> StoredActor:

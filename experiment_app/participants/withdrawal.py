@@ -12,7 +12,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from experiment_app.durable import force_file
 from experiment_app.journal import append_line
 from experiment_app.participants.arrivals import (
     WITHDRAWN,
@@ -25,6 +24,7 @@ from experiment_app.participants.arrivals import (
 from experiment_app.participants.derived import Derived, derived
 from experiment_app.run_folder import JOURNAL, check_participant, journal_text, lock
 from protocols.record import Withdrawn, encode_line
+from stimuli.whole_file import force_file
 
 LEAVING = ".withdrawing-sub-"
 """Start of the name that a participant's folder has between the first and the last step."""

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import re
-import tempfile
 from pathlib import Path
 
 from stimuli.bodies.point_light import FIGURES
 from stimuli.body_files.errors import BodyError
 from stimuli.file_names import why_no_file
 from stimuli.user_folder import make_user_folder, user_folder
+from stimuli.whole_file import whole_file
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
 MATCHED, MISMATCHED = "matched", "mismatched"
@@ -51,16 +50,8 @@ def stored(data: bytes, name: str, replace: bool = False) -> Path:
         raise BodyError(f"{name} comes with gaitlab; choose another name")
     if not replace and name in imported_names():
         raise BodyError(f"there is a body {name} already; choose another name, or say --replace")
-    folder = library_folder()
-    make_user_folder(folder, "bodies")
-    handle, temporary = tempfile.mkstemp(prefix=".", suffix=".part", dir=folder)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(temporary, path_of(name))
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
-    return path_of(name)
+    path = path_of(name)
+    make_user_folder(path.parent, "bodies")
+    with whole_file(path) as stream:
+        stream.write(data)
+    return path

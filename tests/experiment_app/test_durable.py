@@ -9,8 +9,8 @@ import sys
 
 import pytest
 
-from experiment_app.durable import force_file
 from experiment_app.run_folder import participant_runs
+from stimuli.whole_file import force_file
 from tests.experiment_app.sessions import opened, play
 
 
