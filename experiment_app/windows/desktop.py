@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any, Literal
@@ -85,27 +86,23 @@ class DesktopWindow:
         self._pad = Gamepad() if "gamepad" in devices else None
         self._watch: GazeWatch | None = None
         self._unlooked: float | None = None
-        self._handle, self._monitor = open_window(title, full_screen, display, size)
-        x_display = glfw.get_x11_display() if glfw.get_platform() == glfw.PLATFORM_X11 else None
-        try:
-            self._times = open_key_times(keyboard, x_display)
-            self._waiting: Waiting = WaitingForX(x_display) if x_display else WaitingInGlfw()
-            glfw.set_framebuffer_size_callback(self._handle, self._on_size)
-            self._pixels = glfw.get_framebuffer_size(self._handle)
-            self._drawing = Drawing(self._handle, self._pixels, self._pixel_ratio(), samples, self._waiting.wake)
-        except UsageError:
-            glfw.terminate()
-            raise
-        except Exception as error:
-            glfw.terminate()
-            raise UsageError(f"OpenGL 3.3 is needed and could not be started ({error}).") from None
-        by_arrival = self._mouse or self._pad is not None or self._times.name == "arrival"
-        self._patience = LISTENING if by_arrival else float("inf")
-        self._switch_interval = sys.getswitchinterval()
-        sys.setswitchinterval(SWITCH_INTERVAL)
-        self._heard = self.now()
-        self._connect()
-        self._intervals, self._pacing = self._probe(refresh)
+        with ExitStack() as opened:  # what was opened is closed again, latest first, if the rest fails
+            self._handle, self._monitor = open_window(title, full_screen, display, size)
+            opened.callback(glfw.terminate)
+            try:
+                self._start(opened, keyboard, samples)
+            except UsageError:
+                raise
+            except Exception as error:
+                raise UsageError(f"OpenGL 3.3 is needed and could not be started ({error}).") from None
+            by_arrival = self._mouse or self._pad is not None or self._times.name == "arrival"
+            self._patience = LISTENING if by_arrival else float("inf")
+            opened.callback(sys.setswitchinterval, sys.getswitchinterval())
+            sys.setswitchinterval(SWITCH_INTERVAL)
+            self._heard = self.now()
+            self._connect()
+            self._intervals, self._pacing = self._probe(refresh)
+            self._opened = opened.pop_all()
 
     def __enter__(self) -> DesktopWindow:
         return self
@@ -115,11 +112,7 @@ class DesktopWindow:
 
     def close(self) -> None:
         """Closes the window and gives the display back."""
-        sys.setswitchinterval(self._switch_interval)
-        self._drawing.close()
-        self._times.close()
-        self._waiting.close()
-        glfw.terminate()
+        self._opened.close()
 
     @property
     def period(self) -> float:
@@ -221,6 +214,18 @@ class DesktopWindow:
         return (left + x * across - own_left) / max(width, 1), (top + y * down - own_top) / max(height, 1)
 
     # Inside
+
+    def _start(self, opened: ExitStack, keyboard: Keyboard, samples: int) -> None:
+        """Starts what receives keys and what draws; `opened` closes each."""
+        x_display = glfw.get_x11_display() if glfw.get_platform() == glfw.PLATFORM_X11 else None
+        self._times = open_key_times(keyboard, x_display)
+        opened.callback(self._times.close)
+        self._waiting: Waiting = WaitingForX(x_display) if x_display else WaitingInGlfw()
+        opened.callback(self._waiting.close)
+        glfw.set_framebuffer_size_callback(self._handle, self._on_size)
+        self._pixels = glfw.get_framebuffer_size(self._handle)
+        self._drawing = Drawing(self._handle, self._pixels, self._pixel_ratio(), samples, self._waiting.wake)
+        opened.callback(self._drawing.close)
 
     def _on_size(self, _handle: Any, width: int, height: int) -> None:
         """The picture's size in pixels as it was last reported: asked of a window that is gone, it would be rubbish."""

@@ -70,7 +70,7 @@ class Drawing:
         self._thread.start()
         try:
             self._call(lambda: self._start(size, pixel_ratio, samples))
-        except Exception:
+        except BaseException:  # Ctrl-C too: the context must not be in use when the window goes
             self._orders.put(None)
             self._thread.join()
             raise

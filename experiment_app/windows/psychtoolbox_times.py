@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 import sys
 import time
+from contextlib import ExitStack
 from importlib.metadata import version
 from importlib.util import find_spec
 from types import ModuleType
@@ -44,10 +45,15 @@ class PsychtoolboxTimes:
         self._noted = NotedTimes()
         self._keyboards: list[int] = []
         try:
-            for keyboard in self._hid("Devices", KEYBOARDS):
-                self._hid("KbQueueCreate", int(keyboard["index"]))
-                self._hid("KbQueueStart", int(keyboard["index"]))
-                self._keyboards.append(int(keyboard["index"]))
+            with ExitStack() as queues:  # those of the other keyboards are given back, if one does not start
+                for keyboard in self._hid("Devices", KEYBOARDS):
+                    index = int(keyboard["index"])
+                    self._hid("KbQueueCreate", index)
+                    queues.callback(self._hid, "KbQueueRelease", index)
+                    self._hid("KbQueueStart", index)
+                    queues.callback(self._hid, "KbQueueStop", index)
+                    self._keyboards.append(index)
+                self._queues = queues.pop_all()
         except Exception as error:  # PsychHID raises bare Exceptions
             raise RuntimeError(f"Psychtoolbox's keyboard queue does not start ({error})") from None
 
@@ -80,9 +86,7 @@ class PsychtoolboxTimes:
 
     def close(self) -> None:
         """Stops its thread."""
-        for keyboard in self._keyboards:
-            self._hid("KbQueueStop", keyboard)
-            self._hid("KbQueueRelease", keyboard)
+        self._queues.close()
 
 
 def _code(keycode: int) -> int:
