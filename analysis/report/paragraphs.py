@@ -11,6 +11,7 @@ from analysis.planned.plan import AnalysisPlan
 from analysis.planned.results import ALPHA, PlannedResults
 from analysis.recorded.answers import readable
 from analysis.report.values import ADJUSTED
+from analysis.statistics.normal_test import sampled
 
 WAYS = {1: "one", 2: "two", 3: "three", 4: "four", 5: "five", 6: "six"}
 
@@ -223,6 +224,7 @@ def normality_sentence(results: PlannedResults) -> str:
         f"{int(first['n'])}). Of {tested} cells tested one by one, {low} "
         f"{'has' if low == 1 else 'have'} p < .05; "
         f"{number(tested * ALPHA, 1)} would be expected by chance alone."
+        + "".join(f" {note}" for note in sampled(int(first["n"])))
     )
 
 

@@ -16,6 +16,7 @@ from analysis.errors import AnalysisError, check_share, listed
 from analysis.statistics.cells import Levels, names_of
 from analysis.statistics.columns import labels, numbers, require, require_no_colon
 from analysis.statistics.contrasts import subsets, sum_to_zero
+from analysis.statistics.normal_test import normal_test, sampled
 from analysis.statistics.restricted_likelihood import Fitted, Products
 
 FEW_STIMULI = 8
@@ -80,6 +81,7 @@ def mixed_model(
     table = _table(fitted, terms, columns, [subject, stimulus], random, len(data) - int(have.sum()), level)
     modes = fitted.modes()
     table.attrs["checks"] = _normality(y / scale - X @ fitted.beta - Z @ modes, modes[group == 0])
+    table.attrs["notes"] += sampled(len(y))
     return table
 
 
@@ -99,8 +101,8 @@ def _normality(residuals: np.ndarray, intercepts: np.ndarray) -> dict[str, float
     found: dict[str, float] = {}
     for name, values in (("residual", residuals), ("intercept", intercepts)):
         known = len(values) >= 3 and np.ptp(values) > 1e-9
-        w, p = stats.shapiro(values[:5000]) if known else (np.nan, np.nan)
-        found |= {f"{name}_w": float(w), f"{name}_p": float(p)}
+        w, p = normal_test(values) if known else (np.nan, np.nan)
+        found |= {f"{name}_w": w, f"{name}_p": p}
     return found
 
 

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy import stats
 
 from analysis.errors import AnalysisError, check_share, listed
 from analysis.statistics.cells import names_of
 from analysis.statistics.columns import labels, numbers, require
+from analysis.statistics.normal_test import normal_test
 
 
 def regression(data: pd.DataFrame, dv: str, predictors: str | Sequence[str], level: float = 0.95) -> pd.DataFrame:
@@ -115,7 +115,7 @@ def _summary(fitted: Any) -> dict[str, float]:
     from statsmodels.stats.stattools import durbin_watson
 
     n, p = fitted.model.exog.shape
-    w, shapiro_p = stats.shapiro(fitted.resid) if n >= 3 else (np.nan, np.nan)
+    w, shapiro_p = normal_test(np.asarray(fitted.resid)) if n >= 3 else (np.nan, np.nan)
     return {
         "n": n,
         "r2": float(fitted.rsquared),
@@ -130,8 +130,8 @@ def _summary(fitted: Any) -> dict[str, float]:
         "aic": float(fitted.aic) + 2,
         "bic": float(fitted.bic + np.log(n)),
         "durbin_watson": float(durbin_watson(fitted.resid)),
-        "shapiro_w": float(w),
-        "shapiro_p": float(shapiro_p),
+        "shapiro_w": w,
+        "shapiro_p": shapiro_p,
         "loo_rmse": float(np.sqrt(np.mean((fitted.resid / (1 - fitted.get_influence().hat_matrix_diag)) ** 2))),
     }
 

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy import stats
 
 from analysis.statistics.cells import CellMeans, Levels, cell_means, names_of
 from analysis.statistics.columns import require_other_names
 from analysis.statistics.linear_fit import fit
+from analysis.statistics.normal_test import normal_test, sampled
 
 COLUMNS = ("scope", "n", "mean", "sd", "w", "p")
 
@@ -57,7 +57,7 @@ def normality_of_cells(means: CellMeans) -> pd.DataFrame:
                 bare.append(" × ".join(names.values()))
             rows.append(row)
     table = pd.DataFrame(rows)[["scope", *factors, "n", "mean", "sd", "w", "p"]]
-    notes = list(means.notes)
+    notes = [*means.notes, *sampled(len(residuals))]
     if bare:
         shown = "; ".join(bare[:5]) + (f" and {len(bare) - 5} more" if len(bare) > 5 else "")
         notes.append(f"Normality cannot be tested in {shown}: fewer than 3 participants, or no variance.")
@@ -71,6 +71,6 @@ def _test(values: np.ndarray, noise: float) -> dict[str, float]:
     if len(values) > 1:
         row["sd"] = float(values.std(ddof=1))
     if len(values) >= 3 and np.sum((values - values.mean()) ** 2) > noise:
-        w, p = stats.shapiro(values)
-        row |= {"w": float(w), "p": float(p)}
+        w, p = normal_test(values)
+        row |= {"w": w, "p": p}
     return row

@@ -12,6 +12,7 @@ from scipy import special, stats
 from analysis.errors import AnalysisError
 from analysis.statistics.bayes_factor import jzs
 from analysis.statistics.effect_size import hedges_factor, t_noncentrality_limits
+from analysis.statistics.normal_test import normal_test
 
 
 def one_sample(values: np.ndarray, against: float) -> dict[str, Any]:
@@ -115,11 +116,11 @@ def _flat(values: Sequence[float] | np.ndarray) -> bool:
 
 
 def shapiro(values: np.ndarray) -> dict[str, float]:
-    """W and p of Shapiro and Wilk's test (Biometrika 52, 1965); empty for fewer than three or equal values."""
+    """W and p of Shapiro and Wilk's test; empty for fewer than three or equal values."""
     if len(values) < 3 or _flat(values):
         return {}
-    w, p = stats.shapiro(values)
-    return {"shapiro_w": float(w), "shapiro_p": float(p)}
+    w, p = normal_test(values)
+    return {"shapiro_w": w, "shapiro_p": p}
 
 
 def _wilcoxon(differences: np.ndarray, values: np.ndarray) -> dict[str, float]:
