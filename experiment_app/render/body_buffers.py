@@ -137,7 +137,7 @@ def finishes_of(names: Sequence[str], knots: Sequence[float | None] = ()) -> byt
 
 
 class BodyBuffers:
-    """Every body level that was drawn, the least recently drawn given up first beyond MOST_KEPT."""
+    """Every body level that was drawn, until it is given up."""
 
     def __init__(
         self,
@@ -157,10 +157,13 @@ class BodyBuffers:
         found = self._kept.pop(key, None)
         if found is None:
             found = self._upload(body, level)
-            if len(self._kept) >= MOST_KEPT:
-                self._kept.pop(next(iter(self._kept))).release()
         self._kept[key] = found
         return found
+
+    def give_up(self, needed: int) -> None:
+        """Frees the least recently drawn beyond MOST_KEPT, but none of the last `needed`: a picture may show more."""
+        while len(self._kept) > max(MOST_KEPT, needed):
+            self._kept.pop(next(iter(self._kept))).release()
 
     def release(self) -> None:
         """Frees the GPU's memory."""

@@ -92,6 +92,7 @@ class WalkersPass:
             if row + 1 == len(keyed) or keyed[row + 1][:2] != (body, level):
                 self._batches.append(Batch(self.bodies.get(walker.body, level), first, row + 1 - first, level))
                 first = row + 1
+        self.bodies.give_up(len(self._batches))
         assert self._texture is not None
         if keyed:
             self._texture.write(self._rows[: len(keyed)], viewport=(0, 0, TEXELS, len(keyed)))

@@ -8,7 +8,9 @@ import moderngl
 import numpy as np
 import pytest
 
+from experiment_app.render.body_buffers import MOST_KEPT
 from experiment_app.render.cameras import place_camera
+from experiment_app.render.drawn import DrawnWalker
 from experiment_app.render.renderer import Renderer
 from experiment_app.render.treadmill_pass import corners
 from experiment_app.scene import Camera, Ground, Scene, View, Walker
@@ -44,6 +46,24 @@ def test_a_body_is_uploaded_once(context: moderngl.Context) -> None:
     picture(context, renderer, Scene((replace(WALKER, actor="M1"),)), SIZE)
     assert renderer.uploads == 2
     renderer.release()
+
+
+def test_a_picture_of_more_bodies_than_are_kept_on_the_gpu_is_that_of_one_body(context: moderngl.Context) -> None:
+    places = [(1.2 * (i % 10) - 5.4, 1.5 * (i // 10)) for i in range(MOST_KEPT + 12)]
+    scene = Scene(tuple(replace(WALKER, place=place, phase=0.3) for place in places), Camera("elevated", 17.0, 8.0))
+    walkers = drawn_walkers(scene)
+    unlike = [replace(walker, body=replace(walker.body)) for walker in walkers if isinstance(walker, DrawnWalker)]
+    target = context.simple_framebuffer(SIZE)
+    found = []
+    for drawn in (walkers, unlike):
+        renderer = Renderer(context, SIZE, 1.0, 4)
+        renderer.draw(scene, drawn, target)
+        renderer.draw(scene, drawn, target)
+        found.append(renderer.read_pixels(target))
+        assert renderer.uploads == (1 if drawn is walkers else len(unlike))
+        renderer.release()
+    target.release()
+    assert np.array_equal(found[0], found[1])
 
 
 def test_samples_are_brought_down_to_what_the_driver_has(context: moderngl.Context) -> None:
