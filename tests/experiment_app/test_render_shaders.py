@@ -13,9 +13,9 @@ from scipy.spatial.transform import Rotation
 from experiment_app.crowds import drawn_crowd
 from experiment_app.render.body_buffers import LIT_FORMAT, LIT_NAMES, packed
 from experiment_app.render.drawn import PLACE
-from experiment_app.render.light import LIGHTS, fit_sunlight
+from experiment_app.render.light import LIGHTS, ON_WALKERS, fit_sunlight
 from experiment_app.render.picture import Picture
-from experiment_app.render.programs import shader_text
+from experiment_app.render.programs import compose, shader_text
 from experiment_app.render.treadmill_model import BELT_WIDTH, FLOOR, treadmill
 from experiment_app.scene import Crowd, Scene, Walker
 from experiment_app.walkers import drawn_walkers
@@ -33,6 +33,15 @@ void main() {
     vec3 normal = normal_sky.xyz;
     skinned = vec3(dot(x_row, bound), dot(y_row, bound), dot(z_row, bound)) + walker_place();
     turned = vec3(dot(x_row.xyz, normal), dot(y_row.xyz, normal), dot(z_row.xyz, normal));
+}
+"""
+
+SQUARELY = """
+uniform sampler2D directions;
+void main() {
+    vec3 direction = texelFetch(directions, ivec2(gl_FragCoord.xy), 0).xyz;
+    float left = apart(direction, direction);
+    pixel = vec4(highlight(direction, direction, direction, 0.5), pow(left, 3.0), pow(left, 4.0), pow(left, 5.0));
 }
 """
 
@@ -68,6 +77,28 @@ def test_skinning_a_crowd_on_the_gpu_is_skinning_in_numpy(context: moderngl.Cont
     for one, row in zip(got, crowd.rows[own], strict=True):
         turn = Rotation.from_quat(row[:PLACE:2]).as_matrix() * np.sum(row[:PLACE:2] ** 2, axis=1)[:, None, None]
         _assert_skinned(one, surfaces, np.dstack([turn, row[1:PLACE:2, :3]]), np.zeros(3), within=2e-5)
+
+
+def test_what_faces_the_eye_and_the_sun_squarely_shines_with_a_number(context: moderngl.Context) -> None:
+    """Cosines of equal unit vectors come out above 1 for some: no power of what is then left may be taken."""
+    rng = np.random.default_rng(1)
+    directions = rng.normal(size=(64, 64, 3))
+    directions /= np.linalg.norm(directions, axis=2, keepdims=True)
+    given = np.float32(directions)
+    assert np.any(np.einsum("ijk,ijk->ij", given, given) > 1.0)
+    lit = compose("walker.frag.glsl", ON_WALKERS).replace("void main()", "void unused()")
+    program = context.program(vertex_shader=shader_text("full_screen.vert.glsl"), fragment_shader=lit + SQUARELY)
+    table = context.texture((64, 64), 3, given.tobytes(), dtype="f4")
+    result = context.texture((64, 64), 4, dtype="f4")
+    table.use(0)
+    context.framebuffer([result]).use()
+    context.enable_only(moderngl.NOTHING)
+    program["directions"] = 0
+    context.vertex_array(program, []).render(moderngl.TRIANGLES, vertices=3)
+    shining = np.frombuffer(result.read(), np.float32).reshape(-1, 4)
+    assert np.all(np.isfinite(shining))
+    assert np.all(shining[:, 0] > 0.0)
+    assert np.abs(shining[:, 1:]).max() < 1e-15
 
 
 def _skinned(context: moderngl.Context, vertices: np.ndarray, rows: np.ndarray, crowd: bool) -> np.ndarray:

@@ -12,6 +12,12 @@ uniform vec3 light_extent;        // m covered by the shadow map: width, height,
 uniform sampler2DShadow shadow_map;
 uniform sampler2D shadow_depth;
 
+// How far two unit vectors are from being one: 1 less their cosine, 1 beyond 90 degrees. The cosine of the same two
+// may come out a little above 1, and a power of a negative number is no number at all.
+float apart(vec3 one, vec3 other) {
+    return 1.0 - clamp(dot(one, other), 0.0, 1.0);
+}
+
 // Sky light on a surface: bright from above, warm and dim from the ground below.
 vec3 sky_light(vec3 normal) {
     return mix(bounce_colour, sky_colour, 0.5 + 0.5 * normal.y);

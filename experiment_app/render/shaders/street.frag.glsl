@@ -32,7 +32,7 @@ vec3 front(vec3 plaster, vec2 footprint, vec3 to_eye, vec3 normal) {
     colour = mix(colour, vec3(0.36, 0.35, 0.335), 1.0 - clamp((at_wall.y - 0.6) / max(footprint.y, 0.02) + 0.5, 0.0, 1.0));
     colour = mix(colour, min(plaster * 1.18, vec3(0.66)), framed);
     vec3 mirrored = background(normalize(reflect(-to_eye, normal) + vec3(0.0, 0.12, 0.0)));
-    vec3 glass = mix(vec3(0.075, 0.085, 0.095), mirrored, 0.22 + 0.30 * pow(1.0 - abs(dot(normal, to_eye)), 3.0));
+    vec3 glass = mix(vec3(0.075, 0.085, 0.095), mirrored, 0.22 + 0.30 * pow(1.0 - min(abs(dot(normal, to_eye)), 1.0), 3.0));
     colour = mix(colour, mix(glass, plaster * 1.05, clamp(bars, 0.0, 1.0) * 0.7), pane);
 
     // A door in every house's second bay, where its lowest window would be.

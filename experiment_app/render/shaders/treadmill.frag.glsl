@@ -42,7 +42,7 @@ void main() {
     vec3 halfway = normalize(to_eye + to_sun);
     float sharp = 2.0 / (roughness * roughness * roughness * roughness) - 2.0;
     float shine = pow(max(dot(normal, halfway), 0.0), sharp) * (sharp + 2.0) / 8.0 * 0.04;
-    float grazing = 0.04 + 0.96 * pow(1.0 - max(dot(normal, to_eye), 0.0), 5.0);
+    float grazing = 0.04 + 0.96 * pow(apart(normal, to_eye), 5.0);
     colour += sun_colour * shine * facing * lit + sky_colour * grazing * (1.0 - roughness) * 0.8 * open;
     pixel = vec4(fit_to_display(colour), 1.0);
 }

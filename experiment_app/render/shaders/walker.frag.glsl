@@ -48,7 +48,7 @@ float highlight(vec3 normal, vec3 to_eye, vec3 to_light, float roughness) {
     vec3 halfway = normalize(to_eye + to_light);
     float alpha = roughness * roughness;
     float n_h = max(dot(normal, halfway), 0.0);
-    float v_h = max(dot(to_eye, halfway), 0.0);
+    float v_h = clamp(dot(to_eye, halfway), 0.0, 1.0);
     float spread = n_h * n_h * (alpha * alpha - 1.0) + 1.0;
     float distribution = alpha * alpha / (PI * spread * spread);
     float fresnel = 0.04 + 0.96 * pow(1.0 - v_h, 5.0);
@@ -98,7 +98,7 @@ void main() {
     light += sun_colour * diffuse_sun(facing, lit, finish.x) * mix(1.0, clamp(sky_seen, 0.0, 1.0), 0.35);
     vec3 colour = albedo * light;
 
-    float grazing = pow(1.0 - max(dot(normal, to_eye), 0.0), 4.0);
+    float grazing = pow(apart(normal, to_eye), 4.0);
     colour += finish.y * grazing * open * sky_light(reflect(-to_eye, normal)) * mix(vec3(0.5), albedo, 0.7);
     vec3 shine = sun_colour * PI * highlight(normal, to_eye, to_sun, roughness) * max(facing, 0.0) * lit;
     float smoothness = (1.0 - roughness) * (1.0 - roughness);
