@@ -19,23 +19,39 @@ Panels = Mapping[str, pd.DataFrame]
 
 
 def check_quantiles(results: PlannedResults) -> dict[str, dict[str, pd.DataFrame]]:
-    """Q-Q data by test ("anova", "t <factor>", "regression"), then by panel; a test without variance has none."""
+    """Q-Q data by test ("anova", those of `t_test_plots`, "regression"), then by panel; none without variance."""
     found: dict[str, dict[str, pd.DataFrame]] = {}
     means = results.means
     if means is not None:
         _keep(found, "anova", {"": lambda: residual_quantiles(means)})
-    run = set(zip(results.ttests["factor"], results.ttests["reference"], strict=True))
-    for factor in dict.fromkeys(results.ttests["factor"]):
-        where = next(test.where for test in results.plan.t_tests if test.each == factor and (factor, test.label) in run)
-        used = results.used if where is None else results.used[matching(results.used, where)]
-        column = labels(used, factor, results.plan.levels[factor])
+    plots = t_test_plots(results)
+    for asked in results.plan.t_tests:
+        name = plots.get((asked.each, asked.label))
+        if name is None or name in found:
+            continue
+        used = results.used if asked.where is None else results.used[matching(results.used, asked.where)]
+        column = labels(used, asked.each, results.plan.levels[asked.each])
         persons = used.assign(_level=np.array(column.levels)[column.codes])
         person = persons.groupby(["_level", "participant"])[results.plan.measure].mean()
-        _keep(found, f"t {factor}", {level: _quantiles_of(person.loc[level]) for level in column.levels})
+        _keep(found, name, {level: _quantiles_of(person.loc[level]) for level in column.levels})
     for test in results.further:
         if test.kind == "regression":
             _keep(found, "regression", {"": _quantiles_of(test.more["studentised"])})
     return found
+
+
+def t_test_plots(results: PlannedResults) -> dict[tuple[str, str], str]:
+    """Factor and reference of every t test that was run, to the name of its Q-Q data.
+
+    "t <factor>", and which trials it rests on where the factor's tests differ in that; the reference changes no shape.
+    """
+    run = set(zip(results.ttests["factor"], results.ttests["reference"], strict=True))
+    tests = [test for test in results.plan.t_tests if (test.each, test.label) in run]
+    names = {}
+    for test in tests:
+        several = len({other.where for other in tests if other.each == test.each}) > 1
+        names[test.each, test.label] = f"t {test.each}" + (f" ({test.trials})" if several else "")
+    return names
 
 
 def _quantiles_of(values: pd.Series) -> Callable[[], pd.DataFrame]:
@@ -65,8 +81,14 @@ def quantiles_table(found: Mapping[str, Panels]) -> pd.DataFrame:
 def check_plots(found: Mapping[str, Panels], label: str) -> dict[str, DrawnFigure]:
     """A picture for each test; the names of tests as in `check_quantiles`."""
     known = {"anova": "residuals of the analysis of variance", "regression": "studentised residuals of the regression"}
-    what = {test: known.get(test, "means of the participants") for test in found}
+    what = {test: known.get(test) or f"means of the participants{_trials_of(test)}" for test in found}
     return {
         test: qq_plots(panels, f"qq_{test.replace(' ', '_')}", f"{label}: {what[test]}")
         for test, panels in found.items()
     }
+
+
+def _trials_of(test: str) -> str:
+    """Which trials a t test rests on, as its name says it; "" where it does not."""
+    _, bracket, trials = test.partition(" (")
+    return bracket + trials

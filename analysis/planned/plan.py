@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from io import StringIO
 from typing import Any
@@ -129,7 +129,7 @@ def _one_plan(
         levels=levels,
         adjust=None if post_hoc is None else str(post_hoc.get("adjust", "tukey")),
         model=str((post_hoc or {}).get("model", "multivariate")),
-        t_tests=tuple(_against(test, levels) for test in tests if _by_levels(test)),
+        t_tests=_told_apart([_against(test, levels) for test in tests if _by_levels(test)]),
         comparisons=tuple(_comparison(test) for test in tests if not _by_levels(test)),
         pairs=tuple(
             PairsPlan(
@@ -226,6 +226,17 @@ def _against(test: Mapping[str, Any], levels: Mapping[str, tuple[str, ...]]) -> 
         shown = {numeric_label(level) for level in levels[each]}
         values = {level: value for level, value in values.items() if numeric_label(level) in shown}
     return TTestPlan(each, values, str(test.get("label", "reference value")), test.get("where"))
+
+
+def _told_apart(tests: Sequence[TTestPlan]) -> tuple[TTestPlan, ...]:
+    """The tests, a label that an earlier one of the same factor has with other trials made longer by which trials."""
+    known: dict[tuple[str, str], TTestPlan] = {}
+    named = []
+    for test in tests:
+        first = known.setdefault((test.each, test.label), test)
+        same = first.where == test.where
+        named.append(test if same else replace(test, label=f"{test.label} ({test.trials})"))
+    return tuple(named)
 
 
 def _comparison(test: Mapping[str, Any]) -> ComparisonPlan:

@@ -16,6 +16,11 @@ class TTestPlan:
     label: str
     where: str | None = None
 
+    @property
+    def trials(self) -> str:
+        """Which trials it rests on."""
+        return self.where or "all trials"
+
 
 @dataclass(frozen=True)
 class ComparisonPlan:

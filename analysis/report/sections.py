@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import pandas as pd
 
 from analysis import apa
+from analysis.figures.check_plots import t_test_plots
 from analysis.figures.drawing import DrawnFigure
 from analysis.planned.results import ALPHA, PlannedResults
 from analysis.report import paragraphs
@@ -91,6 +92,7 @@ def t_tests_section(results: PlannedResults, plots: Mapping[str, DrawnFigure]) -
     if not len(data):
         return Markup("")
     unit, decimals = unit_cell(results)
+    names = t_test_plots(results)
     parts: list[object] = [element("h2", "Comparison with reference values")]
     for (factor, reference), part in data.groupby(["factor", "reference"], sort=False):
         shown = part.assign(
@@ -110,7 +112,7 @@ def t_tests_section(results: PlannedResults, plots: Mapping[str, DrawnFigure]) -
             "bf10": ("BF₁₀", bayes_cell),
             "shapiro_p": (element("span", "Shapiro–Wilk ", element("i", "p")), p_cell),
         }
-        parts += [table(shown, columns, list(part["p"] < ALPHA)), check_plot(plots.get(f"t {factor}"))]
+        parts += [table(shown, columns, list(part["p"] < ALPHA)), check_plot(plots.get(names[factor, reference]))]
     of_measure = results.plan.unit
     measured_in = f" Means and differences in {of_measure}." if apa.follows_numbers(of_measure) else ""
     parts.append(

@@ -378,3 +378,25 @@ def test_a_t_test_that_cannot_be_run_does_not_keep_another_of_the_same_factor_fr
 def with_tests(text: str, test: str) -> str:
     """The study with one more t test before its own."""
     return text.replace("    - each: actor\n      against:", f"    - {test}\n    - each: actor\n      against:", 1)
+
+
+def test_t_tests_of_the_same_factor_in_other_trials_have_a_q_q_plot_of_their_own(tmp_path: Path) -> None:
+    """Each of the residuals it rests on; the label alone, which may be the same, would not tell them apart."""
+    text = with_tests(study_text(), "{each: actor, against: 0.006, label: captured walk ratio, where: speed == 1.2}")
+    out = tmp_path / "out"
+    outcome = analyse(write_study(tmp_path / "walk_ratio", 8, text), out)
+    points, trials = pd.read_csv(out / "qq.csv"), pd.read_csv(out / "trials.csv")
+    assert set(points["test"]) == {"anova", "t actor (speed == 1.2)", "t actor (all trials)"}
+    for name, rested in (("speed == 1.2", trials[trials["speed"] == 1.2]), ("all trials", trials)):
+        means = rested[rested["actor"] == "F1"].groupby("participant")["walk_ratio"].mean().sort_values()
+        shown = points[(points["test"] == f"t actor ({name})") & (points["panel"] == "F1")]["ordered"]
+        assert shown.to_numpy() == pytest.approx(((means - means.mean()) / means.std()).to_numpy(), abs=1e-6)
+    page = outcome.report.read_text(encoding="utf-8")
+    assert page.index("means of the participants (speed == 1.2)") < page.index("means of the participants (all trials)")
+    table = pd.read_csv(out / "ttests.csv")
+    assert list(table["reference"].unique()) == ["captured walk ratio", "captured walk ratio (all trials)"]
+    assert len(table) == 8
+
+
+def test_one_t_test_of_a_factor_needs_no_word_on_its_trials(analysed: tuple[Path, Path, AnalysisOutcome]) -> None:
+    assert set(pd.read_csv(analysed[1] / "qq.csv")["test"]) == {"anova", "t actor"}
