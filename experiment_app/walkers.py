@@ -12,14 +12,14 @@ import numpy as np
 from experiment_app.crowds import drawn_crowd, measured_crowd
 from experiment_app.render.drawn import Drawn, DrawnCrowd, DrawnWalker
 from experiment_app.scene import Scene, Walker
-from stimuli.actors import Actor, load_actor
+from stimuli.actors import Actor, load_actor, person_of, tree_of
 from stimuli.bodies.body import Body
 from stimuli.bodies.imported_bodies import OWN_BUILD
 from stimuli.bodies.known import body_for, comes_with_gaitlab, in_the_build_of, load_body, scaled
 from stimuli.bodies.point_light import FIGURES, figure_lines, resting
 from stimuli.bodies.retarget import on_its_own_soles
 from stimuli.measure import delivered_gait
-from stimuli.methods.actor_walks import natural_step_frequency
+from stimuli.methods.actor_walks import step_frequency_of
 from stimuli.methods.delivery import delivered
 from stimuli.methods.made import MadeWalk, made_walk
 from stimuli.methods.recipe import Making
@@ -38,7 +38,7 @@ def cast(actor: str, body: str) -> tuple[Actor, Body]:
     if not body or body in FIGURES:
         chosen = load_actor(actor)
         return chosen, scaled(load_body(chosen.body), chosen.height)
-    name = body_for(load_actor(actor).sex, body)
+    name = body_for(person_of(actor).sex, body)
     worn = load_body(name)
     chosen = load_actor(actor, worn)
     grown = scaled(worn, chosen.height)
@@ -108,7 +108,7 @@ def pose_checksum(drawn: Sequence[Drawn]) -> str:
 def own_step_frequency(actor: str, body: str, making: Making | None, speed: float) -> float:
     """steps/min that a walk has by itself at a speed (m/s), as captured or as made."""
     if making is None:
-        return natural_step_frequency(cast(actor, body)[0], speed)
+        return step_frequency_of(tree_of(actor), person_of(actor).walk_ratio, speed)
     return walk_of(actor, body, making, speed).step_frequency
 
 

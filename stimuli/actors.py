@@ -156,6 +156,12 @@ def tree_of(name: str) -> Tree:
     return metronome_tree(METRONOME, CYCLE_SPEEDS) if stored is None else stored.tree
 
 
+def person_of(name: str) -> Person:
+    """Who a default or imported actor is; raises ActorError for a name that is not known."""
+    stored = _stored(name)
+    return people()[name] if stored is None else stored.person
+
+
 def provenance_of(name: str) -> str:
     """Where an actor's walk comes from, as `Actor.provenance`; raises ActorError for a name that is not known."""
     stored = _stored(name)

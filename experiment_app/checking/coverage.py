@@ -56,11 +56,13 @@ def walks_of(study: Study) -> Iterator[Walk]:
 
 def _why_not(walk: Walk) -> str:
     """Why a walk cannot be, as a sentence; "" when it can."""
-    from experiment_app.walkers import own_step_frequency
+    from experiment_app.walkers import cast, own_step_frequency
     from stimuli.actors import tree_of
     from stimuli.blend_tree import blend_weights
 
     try:
+        if _has_imported(walk):
+            cast(walk.actor, walk.body)
         making = making_of(walk)
         own = own_step_frequency(walk.actor, walk.body, making, walk.speed)
         if making is None:
@@ -68,6 +70,14 @@ def _why_not(walk: Walk) -> str:
     except ValueError as error:
         return str(error)
     return ""
+
+
+def _has_imported(walk: Walk) -> bool:
+    """Whether a walk has to be tried: gaitlab's own actors can wear all of its bodies, an imported file may be damaged."""
+    from stimuli import actor_library
+    from stimuli.bodies import imported_bodies
+
+    return walk.actor in actor_library.imported_names() or walk.body in imported_bodies.imported_names()
 
 
 def _shown(study: Study) -> Iterator[_Shown]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from stimuli.actors import Actor
-from stimuli.blend_tree import coverage, followed_step_frequency
+from stimuli.blend_tree import Tree, coverage, followed_step_frequency
 from stimuli.cycle import PHASES, Cycle, Provenance
 from stimuli.measure import poses
 from stimuli.methods.making import MethodError
@@ -48,11 +48,16 @@ def actor_walk(actor: Actor, speed: float, step_frequency: float | None = None, 
 
 def natural_step_frequency(actor: Actor, speed: float) -> float:
     """steps/min: what the captures went with, or the actor's walk ratio, SF = sqrt(60 v / WR), within the cycles."""
-    followed = followed_step_frequency(actor.tree, speed)
+    return step_frequency_of(actor.tree, actor.captured_walk_ratio, speed)
+
+
+def step_frequency_of(tree: Tree, walk_ratio: float, speed: float) -> float:
+    """The same of somebody whose cycles need not be made for it. walk_ratio: m·min, the person's own."""
+    followed = followed_step_frequency(tree, speed)
     if followed is not None:
         return followed
-    frequency = float(np.sqrt(60.0 * speed / actor.captured_walk_ratio))
-    low, high = coverage(actor.tree).get("step_frequency", (frequency, frequency))
+    frequency = float(np.sqrt(60.0 * speed / walk_ratio))
+    low, high = coverage(tree).get("step_frequency", (frequency, frequency))
     return min(max(frequency, low), high)
 
 
