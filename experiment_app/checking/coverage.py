@@ -73,7 +73,7 @@ def _why_not(walk: Walk) -> str:
 
 
 def _has_imported(walk: Walk) -> bool:
-    """Whether a walk has to be tried: gaitlab's own actors can wear all of its bodies, an imported file may be damaged."""
+    """Whether a walk is to be tried: gaitlab's own actors wear all of its bodies, imported files may be damaged."""
     from stimuli import actor_library
     from stimuli.bodies import imported_bodies
 
