@@ -212,10 +212,11 @@ def _events(
 def _subject(parameters: Mapping[str, Any]) -> Subject:
     """From SUBJECT:LABELS and VALUES (Schreiber & Moissenet) or PROCESSING (Vicon, mm). No name is read."""
     group, processing = parameters.get("SUBJECT", {}), parameters.get("PROCESSING", {})
-    values = _value(group, "VALUES")
-    said: dict[str, float] = {}
-    if values is not None:
-        said = dict(zip(_words(group, "LABELS"), map(float, np.ravel(values)), strict=False))
+    try:
+        values = np.ravel(np.asarray(_value(group, "VALUES"), dtype=np.float64)).tolist()
+    except (TypeError, ValueError):  # words, such as "1.80 m"
+        values = []
+    said = {what: value for what, value in zip(_words(group, "LABELS"), values, strict=False) if math.isfinite(value)}
     legs = [said[k] for k in ("R_legLength", "L_legLength") if k in said] or [
         length / 1000 for k in ("RLegLength", "LLegLength") if (length := _number(processing, k))
     ]

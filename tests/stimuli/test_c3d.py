@@ -11,7 +11,9 @@ from hypothesis import strategies as st
 
 pytest.importorskip("ezc3d", reason="ezc3d is not installed (extra mocap)")
 
-from stimuli.clip import world_positions
+import ezc3d
+
+from stimuli.clip import Subject, world_positions
 from stimuli.cycle import extract_cycle, seam_gaps
 from stimuli.gait_measures import measure
 from stimuli.motion_files.axes import to_y_up
@@ -117,6 +119,18 @@ def test_the_subject_is_read_and_names_are_not():
     assert (vicon.height, vicon.mass) == (1.68, 60.0)
     named = read_c3d(MOCAP / "c3d/c3d-org/sample01_Eb015pi.c3d")
     assert "baum" not in repr(named).lower()
+
+
+def test_a_subject_described_in_words_is_left_out_and_the_markers_are_read(tmp_path):
+    file = ezc3d.c3d()
+    file["parameters"]["POINT"]["RATE"]["value"] = [100.0]
+    file["parameters"]["POINT"]["LABELS"]["value"] = ["LASI", "RASI"]
+    file["data"]["points"] = np.ones((4, 2, 5))
+    file.add_parameter("SUBJECT", "LABELS", ["height", "weight"])
+    file.add_parameter("SUBJECT", "VALUES", ["1,80 m", "unknown"])
+    file.write(str(tmp_path / "words.c3d"))
+    recording = read_c3d(tmp_path / "words.c3d")
+    assert (recording.subject, recording.points.shape) == (Subject(), (5, 2, 3))
 
 
 def test_labels_of_several_marker_sets_mean_the_same_places():
