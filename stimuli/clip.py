@@ -33,7 +33,7 @@ class Source:
     up: str
     forward: str
     names: str
-    file_rate: float  # Hz as written in the file, before it was set to the whole rate meant
+    file_rate: float  # Hz as written in the file, before it was set to the whole rate meant; nan where none is
     residual: float = float("nan")
     left_out: tuple[int, int] = (0, 0)
 

@@ -44,7 +44,7 @@ def read_mvnx(
     parents, rest_offsets = _tree(path, subject, segments, points)
     order = _order(path, parents)
     rotations, places = _frames(path, subject, len(segments))
-    file_rate = _rate(path, subject)
+    file_rate = _rate(path, subject, rate)
     new_index = {old: new for new, old in enumerate(order)}
     new_parents = [new_index[parents[old]] if parents[old] >= 0 else -1 for old in order]
     offsets = rest_offsets[order]
@@ -155,11 +155,14 @@ def _frames(path: Path, subject: ElementTree.Element, count: int) -> tuple[Float
     return normalise(wxyz[..., [1, 2, 3, 0]]), np.array(places).reshape(-1, count, 3)
 
 
-def _rate(path: Path, subject: ElementTree.Element) -> float:
+def _rate(path: Path, subject: ElementTree.Element, given: float | None) -> float:
+    """Hz as the file says; nan where it says none and one is given."""
     try:
         rate = float(subject.get("frameRate", ""))
     except ValueError:
         rate = float("nan")
-    if not 1 <= rate <= 10_000:
+    if 1 <= rate <= 10_000:
+        return rate
+    if given is None:
         raise MotionFileError(f"{path}: frameRate {subject.get('frameRate')!r} is not 1 to 10000 Hz; give rate")
-    return rate
+    return float("nan")

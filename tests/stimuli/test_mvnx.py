@@ -11,6 +11,7 @@ from stimuli.clip import world_positions
 from stimuli.motion_files.bvh import read_bvh
 from stimuli.motion_files.errors import MotionFileError
 from stimuli.motion_files.mvnx import read_mvnx
+from stimuli.motion_files.reading import read_clip
 from stimuli.motion_files.rest_pose import rest_pose
 
 MVNX = Path(__file__).parents[2].parent / "shared" / "mocap" / "mvnx"
@@ -111,6 +112,12 @@ def test_bad_files_end_in_one_sentence_naming_the_file(tmp_path, change, words):
     with pytest.raises(MotionFileError, match=words) as error:
         read_mvnx(path)
     assert str(path) in str(error.value)
+
+
+def test_a_file_without_a_frame_rate_is_read_with_the_rate_beside_it(tmp_path):
+    (tmp_path / "tiny.mvnx").write_text(tiny().replace('frameRate="60"', ""))
+    (tmp_path / "tiny.mvnx.yaml").write_text("rate: 120\n")
+    assert read_clip(tmp_path / "tiny.mvnx").rate == 120.0
 
 
 @given(st.data())
