@@ -26,6 +26,7 @@ Floats = NDArray[np.floating]
 
 PATHS = {"translation": 3, "rotation": 4, "scale": 3}
 LONGEST = 3600.0  # s
+MOST_POSES = 10_000_000  # frames times nodes, a GB of matrices; ten minutes of 100 nodes at 120 Hz are 7 million
 LEAST_RATE = 20.0  # Hz, at which animations with sparser keys are sampled
 
 
@@ -62,7 +63,7 @@ def read_gltf_motion(
     nodes = _nodes(document)
     channels = _channels(document, chosen, len(nodes.names))
     joints, bind = _joints(document, nodes, channels)
-    times, used_rate, file_rate = _times(path, channels, rate)
+    times, used_rate, file_rate = _times(path, channels, rate, len(nodes.names))
     world = _world(nodes, _animated(nodes, channels, times))
     rest = _rest(nodes, joints, bind)
     parents = _joint_parents(nodes, joints)
@@ -192,8 +193,8 @@ def _channels(document: Document, animation: dict[str, Any], count: int) -> list
     return channels
 
 
-def _times(path: Path, channels: list[_Channel], rate: float | None) -> tuple[Floats, float, float]:
-    """Times (s) of the frames, their rate (Hz), and the rate of the keys."""
+def _times(path: Path, channels: list[_Channel], rate: float | None, nodes: int) -> tuple[Floats, float, float]:
+    """Times (s) of the frames, their rate (Hz), and the rate of the keys; nodes: how many are posed in each frame."""
     start, end = min(c.times[0] for c in channels), max(c.times[-1] for c in channels)
     if not 0 <= end - start <= LONGEST:
         raise MotionFileError(f"{path}: its animation lasts {end - start:g} s; at most {LONGEST:g} s are read")
@@ -203,7 +204,13 @@ def _times(path: Path, channels: list[_Channel], rate: float | None) -> tuple[Fl
     used = max(file_rate, LEAST_RATE) if rate is None else rate
     if not 1 <= used <= 10_000:
         raise MotionFileError(f"{path}: a rate of {used:g} Hz is not between 1 and 10000; give rate in Hz")
-    return start + np.arange(int(np.floor((end - start) * used + 1e-3)) + 1) / used, used, file_rate
+    count = int(np.floor((end - start) * used + 1e-3)) + 1
+    if count * nodes > MOST_POSES:
+        raise MotionFileError(
+            f"{path}: {end - start:g} s at {used:g} Hz are {count} frames, too many for {nodes} nodes; give a lower "
+            f"rate in Hz, or cut the animation"
+        )
+    return start + np.arange(count) / used, used, file_rate
 
 
 def _animated(nodes: _Nodes, channels: list[_Channel], times: Floats) -> dict[str, Floats]:

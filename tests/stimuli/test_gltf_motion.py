@@ -172,6 +172,13 @@ def test_no_value_anywhere_in_the_file_escapes_as_another_error(tmp_path_factory
     assert np.all(np.isfinite(world_positions(clip)))
 
 
+def test_keys_a_tenth_of_a_millisecond_apart_and_one_after_an_hour_are_refused_before_they_fill_the_memory(tmp_path):
+    times = (0.0, 0.0001, 0.0002, 0.0003, 3500.0)
+    path = written(tmp_path, document(values=np.tile([0.0, 0.0, 0.0, 1.0], (5, 1)), times=times))
+    with pytest.raises(MotionFileError, match="3500 s at 10000 Hz are 35000001 frames, too many for 2 nodes; give a"):
+        read_gltf_motion(path)
+
+
 def test_a_motion_in_gltf_1_0_is_refused(tmp_path):
     with pytest.raises(MotionFileError, match=r"is glTF 1\.0; only glTF 2\.0 can be read"):
         read_gltf_motion(written(tmp_path, document() | {"asset": {"version": "1.0"}}))
