@@ -30,13 +30,18 @@ LEGEND = 5.0  # inches that the legend above the panels needs
 def t_tests_figure(figure: FigurePlan, results: PlannedResults) -> DrawnFigure:
     """Means of the levels with 95 % limits, reference values, and a star where the two do not differ.
 
-    With panels, the levels of every group stand in a panel of their own. Raises AnalysisError without the tests.
+    With panels, the levels of every group stand in a panel of their own. Where tests of several factors have the
+    label, the first, or that of the groups' factor, is shown. Raises AnalysisError without the tests.
     """
     plan = results.plan
-    test = next((t for t in plan.t_tests if t.label == figure.reference), None)
-    rows = results.ttests[results.ttests["reference"] == figure.reference] if len(results.ttests) else results.ttests
-    if test is None or not len(rows):
+    against = results.ttests[results.ttests["reference"] == figure.reference]
+    tested = set(against["factor"])
+    if figure.panels is not None:
+        tested &= {plan.groups[figure.panels].of}
+    test = next((t for t in plan.t_tests if t.label == figure.reference and t.each in tested), None)
+    if test is None:
         raise AnalysisError(f"there are no t tests against the {figure.reference} to show.")
+    rows = against[against["factor"] == test.each]
     used = results.used if test.where is None else results.used[matching(results.used, test.where)]
     groups = {"": tuple(rows["level"])}
     if figure.panels is not None:

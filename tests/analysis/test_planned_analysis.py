@@ -398,5 +398,14 @@ def test_t_tests_of_the_same_factor_in_other_trials_have_a_q_q_plot_of_their_own
     assert len(table) == 8
 
 
+def test_a_figure_of_t_tests_shows_one_factor_where_two_have_the_same_label(tmp_path: Path) -> None:
+    """As "reference value", which is what a test without a label of its own is against."""
+    text = with_tests(study_text(), "{each: speed, against: 0.006, label: captured walk ratio}")
+    text = text.replace("  figures:\n", "  figures:\n    - {kind: t_tests, reference: captured walk ratio}\n")
+    outcome = analyse(write_study(tmp_path / "walk_ratio", 8, text), tmp_path / "out")
+    assert "t_tests_speed.png" in {path.name for path in outcome.paths}
+    assert not any("not drawn" in warning for warning in outcome.warnings)
+
+
 def test_one_t_test_of_a_factor_needs_no_word_on_its_trials(analysed: tuple[Path, Path, AnalysisOutcome]) -> None:
     assert set(pd.read_csv(analysed[1] / "qq.csv")["test"]) == {"anova", "t actor"}
