@@ -38,7 +38,7 @@ from experiment_app.opening import (
 from experiment_app.participants.arrivals import first_headers
 from experiment_app.participants.earlier import default_data, refuse_another_study, refuse_lookalike, tell_changes
 from experiment_app.run_folder import Run, check_participant
-from experiment_app.staging import crowd_of, making_of
+from experiment_app.staging import crowd_of, differing_scenes, making_of
 from experiment_app.terminal import typed
 from experiment_app.timing.page import write_certificate
 from experiment_app.walkers import cast, own_step_frequency
@@ -159,6 +159,7 @@ def run_live(
             preparing(opened.plan, say),
             without_collection(),
         ):
+            window.prepare(differing_scenes(opened.plan))
             session = run_session(begin(opened.plan), heard, recording_gaze(told, gaze))
     _certify(opened.run, say)
     return _farewell(opened, command, session.ended, say)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, replace
 from functools import cache
 
-from experiment_app.scene import Box, Camera, Crowd, Line, Marks, Page, Row, Scene, Slider, Walker
+from experiment_app.scene import Box, Camera, Crowd, Ground, Line, Marks, Page, Row, Scene, Slider, Walker
 from experiment_app.walkers import own_step_frequency
 from protocols.crowd_part import CrowdOf
+from protocols.events import Shown
 from protocols.form import Choice, Form
 from protocols.mistakes.consistency import MOST_TRIALS
-from protocols.plan import QuestionsStep, TextStep, TrialStep
+from protocols.parts import Level
+from protocols.plan import Plan, QuestionsStep, TextStep, TrialStep
 from protocols.session import Overlay, Session
+from protocols.setting import value_of
 from protocols.stimulus import Making as OwnMaking
 from protocols.stimulus import Walk
 from protocols.study import Study
@@ -43,8 +47,9 @@ def stage(session: Session) -> Scene:
 def _trial_scene(session: Session, view: View) -> Scene:
     """What a trial shows; where the study wants it, a scrambled point light stands differently in every trial."""
     study, step = session.plan.study, session.step
-    scene = view_scene(study, view)
-    if not study.stimulus.marks.each_trial or not isinstance(step, TrialStep):
+    assert isinstance(step, TrialStep)
+    scene = view_scene(study, view, step.trial.values)
+    if not study.stimulus.marks.each_trial:
         return scene
     number = step.trial.number + (MOST_TRIALS if step.trial.practice else 0)
     marks = replace(scene.marks, seed=scene.marks.seed + number)
@@ -52,30 +57,51 @@ def _trial_scene(session: Session, view: View) -> Scene:
     return replace(scene, marks=marks, beside=beside)
 
 
-def staged(study: Study, walkers: tuple[Walker, ...]) -> Scene:
-    """The walkers as the study wants them seen: its ground, camera, marks, level of detail and viewer's angle."""
+def differing_scenes(plan: Plan) -> list[Scene]:
+    """The first picture of a trial for every camera and ground; none where all trials of the plan share them.
+
+    A window that has drawn them has built every ground, so that no trial's first frame waits for one.
+    """
+    trials: dict[tuple[Camera, Ground], TrialStep] = {}
+    for step in plan.steps:
+        if isinstance(step, TrialStep):
+            empty = staged(plan.study, (), step.trial.values)
+            trials.setdefault((empty.camera, empty.ground), step)
+    if len(trials) < 2:
+        return []
+    return [
+        view_scene(plan.study, plan.begin(step).handle(Shown(0.0)).view, step.trial.values) for step in trials.values()
+    ]
+
+
+def staged(study: Study, walkers: tuple[Walker, ...], levels: Mapping[str, Level]) -> Scene:
+    """The walkers as the study wants them seen in a trial with these levels.
+
+    That is: ground, camera, marks, level of detail and viewer's angle.
+    """
     look = study.stimulus
+    seen_from = look.camera.resolved(levels)
     camera = Camera(
-        view=look.camera.view,
-        distance=look.camera.distance,
-        height=look.camera.height,
-        field_of_view=field_of_view(look.camera, study.display),
-        heading=look.camera.heading,
-        place=(look.camera.place[0], look.camera.place[1]) if look.camera.place else (0.0, 0.0),
+        view=seen_from.view,
+        distance=seen_from.distance,
+        height=seen_from.height,
+        field_of_view=field_of_view(seen_from, study.display),
+        heading=seen_from.heading,
+        place=seen_from.place or (0.0, 0.0),
     )
     return Scene(
         walkers,
         camera,
-        look.ground,
+        value_of(look.ground, levels),
         marks=Marks(**look.marks.model_dump(exclude={"each_trial"})),
         screen_angle=study.display.angle if study.display is not None else 0.0,
         lod=look.level_of_detail,
     )
 
 
-def view_scene(study: Study, view: View) -> Scene:
-    """What a trial shows: one walk, or two beside each other, and in a strip below them what is asked."""
-    scenes = [_seen_scene(study, seen) for seen in view.walks]
+def view_scene(study: Study, view: View, levels: Mapping[str, Level]) -> Scene:
+    """What a trial with these levels shows: one walk, or two beside each other, and in a strip what is asked."""
+    scenes = [_seen_scene(study, seen, levels) for seen in view.walks]
     scene = Scene()
     if scenes:
         scene = scenes[0] if len(scenes) == 1 else replace(scenes[0], beside=scenes[1])
@@ -85,11 +111,11 @@ def view_scene(study: Study, view: View) -> Scene:
     return replace(scene, page=replace(page, over_scene=bool(scenes)), strip=page.strip)
 
 
-def _seen_scene(study: Study, seen: Seen) -> Scene:
-    """One walk, or one crowd, as the study wants it seen."""
+def _seen_scene(study: Study, seen: Seen, levels: Mapping[str, Level]) -> Scene:
+    """One walk, or one crowd, as the study wants it seen in a trial with these levels."""
     if seen.walk.crowd is None:
-        return staged(study, (_walker(seen),))
-    return replace(staged(study, ()), crowd=crowd_of(seen.walk.crowd, seen.time))
+        return staged(study, (_walker(seen),), levels)
+    return replace(staged(study, (), levels), crowd=crowd_of(seen.walk.crowd, seen.time))
 
 
 def crowd_of(crowd: CrowdOf, seconds: float = 0.0) -> Crowd:

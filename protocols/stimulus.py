@@ -22,7 +22,7 @@ from protocols.setting import (
     StepFrequencySetting,
     value_of,
 )
-from protocols.viewing import Appearance
+from protocols.viewing import Appearance, Ground
 
 Method = Literal["captured", "blend", "timewarp", "fourier", "pca", "poulaine"]
 Points = Literal[4, 5]
@@ -108,7 +108,7 @@ class Stimulus(SettingsPart, Appearance):
     @classmethod
     def takes(cls) -> dict[str, Any]:
         """Field to the type of its values."""
-        return {"actor": Text, "speed": Speed, "body": Text}
+        return {"actor": Text, "speed": Speed, "body": Text, "ground": Ground}
 
     def walk(self, levels: Mapping[str, Level], alternative: Alternative | None = None) -> Walk:
         """The walk of a trial with these levels, or an alternative's: what it leaves out is as in the stimulus."""

@@ -20,7 +20,7 @@ from pydantic import BaseModel, ValidationError
 
 from protocols.mistakes.mistake import Mistake, Place
 from protocols.mistakes.wrong_types import shortened, wrong_type
-from protocols.setting import CONSTANT, FACTOR, LIMITS, TABLE
+from protocols.setting import CONSTANT, FACTOR, LIMITS, TABLE, SettingsPart
 from protocols.study import Study
 
 MISSING = "this key is missing"
@@ -195,6 +195,8 @@ def _explain(error: Any, document: Any) -> Mistake:
         way = f"did you mean {near[0]}?" if near else f"allowed here: {', '.join(allowed)}"
         if value is None and " " in str(where[-1]):
             way = "between { and } a text with a comma stands in quotes"
+        elif str(where[-1]).startswith("$") and _has_settings(document, where[:-1]):
+            way = f"a table belongs to a single key, as {allowed[0]}: {{{where[-1]}: ...}}; {way}"
         elif str(where[-1]).startswith("$"):
             way = f"what stands here is the same in all trials, no table by a factor; {way}"
         return Mistake(where, f"unknown key; {way}", on_key=True)
@@ -287,11 +289,21 @@ def _at(node: Any, part: str | int) -> Any:
 
 def _allowed_keys(document: Any, where: Place) -> list[str]:
     """Keys that may stand at a place of the study file; where its kind of part is not known, those of all."""
+    models = _models_at(document, where)
+    return list(dict.fromkeys(f.alias or n for model in models for n, f in model.model_fields.items()))
+
+
+def _has_settings(document: Any, where: Place) -> bool:
+    """Whether values of the part at a place of the study file can be tables by a factor."""
+    return any(issubclass(model, SettingsPart) and model.takes() for model in _models_at(document, where))
+
+
+def _models_at(document: Any, where: Place) -> list[type[BaseModel]]:
+    """The study parts that may stand at a place of the study file."""
     annotation, node = Study, document
     for part in where:
         annotation, node = _inside(annotation, part, node), _at(node, part)
-    models = _models(annotation, node)
-    return list(dict.fromkeys(f.alias or n for model in models for n, f in model.model_fields.items()))
+    return _models(annotation, node)
 
 
 def _inside(annotation: Any, part: str | int, node: Any) -> Any:

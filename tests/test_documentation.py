@@ -173,6 +173,22 @@ def test_the_yaml_of_the_study_file_page_is_accepted_in_a_study():
     assert texts <= file.study.words.model_fields_set, "the French example names every word"
 
 
+def test_the_views_by_factors_of_the_study_file_page_go_together():
+    from protocols.mistakes.consistency import inconsistencies
+    from protocols.study_file import parse_study
+    from tests.protocols.studies import shipped_text
+
+    (block,) = (b for b in blocks(ROOT / "docs" / "study-file.md", "yaml") if b.startswith("factors:"))
+    factors, _, look = block.partition("stimulus:\n")
+    levels = "".join(f"  {level}\n" for level in re.findall(r"\w+: \[[^]]*\]", factors))
+    text = shipped_text().replace("factors:\n", f"factors:\n{levels}")
+    text = re.sub(r"  ground: .*\n  camera: .*\n", look + "\n", text)
+    text = re.sub(r"(  - \{actor: T\d[^}]*)\}", r"\1, stands: beside, nearness: near}", text)
+    study = parse_study("page.yaml", text).study
+    assert inconsistencies(study) == []
+    assert study.stimulus.camera.resolved({"stands": "before", "nearness": "far"}).place == (0.0, 8.0)
+
+
 def test_the_orders_of_the_study_file_page_are_orders():
     from pydantic import TypeAdapter
     from ruamel.yaml import YAML

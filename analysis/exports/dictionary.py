@@ -166,9 +166,9 @@ def of_study(study: Mapping[str, Any]) -> dict[str, Column]:
 
 def _uses(study: Mapping[str, Any], factor: str) -> tuple[list[str], list[str]]:
     """Places of the stimulus and the task whose value is a factor's level, and those where a table looks it up."""
-    settings = [
-        (f"{part}.{name}", value) for part in ("stimulus", "task") for name, value in (study.get(part) or {}).items()
-    ]
+    parts = {part: dict(study.get(part) or {}) for part in ("stimulus", "task")}
+    parts["stimulus.camera"] = parts["stimulus"].pop("camera", None) or {}
+    settings = [(f"{part}.{name}", value) for part, given in parts.items() for name, value in given.items()]
     same = [place for place, value in settings if value == f"${factor}"]
     return same, [place for place, value in settings if isinstance(value, Mapping) and _looks_up(value, f"${factor}")]
 

@@ -13,6 +13,7 @@ from experiment_app.checking.slides import sliding_bodies
 from protocols.mistakes.consistency import inconsistencies, referred_factors, settings_of
 from protocols.mistakes.mistake import Mistake, Place
 from protocols.mistakes.placeholders import unknown_placeholders
+from protocols.mistakes.views import shown_views
 from protocols.orders.design import conditions, make_trials, tracks
 from protocols.orders.order import AdaptiveOrder
 from protocols.resuming import in_words
@@ -191,12 +192,13 @@ def _wrong_arrows(study: Study) -> Iterator[str]:
 
 
 def _untrue_perspective(study: Study) -> Iterator[str]:
-    given = study.stimulus.camera.field_of_view
-    if study.display is not None and given is not None and abs(given - study.display.angle) > 1.0:
-        yield (
-            f"the camera sees {given:g} degrees but the screen fills {study.display.angle:.1f} for the viewer, so the "
-            "perspective is not true; leave field_of_view out to make it so."
-        )
+    fills = study.display.angle if study.display is not None else None
+    for given in dict.fromkeys(camera.field_of_view for _, camera, _ in shown_views(study)):
+        if fills is not None and given is not None and abs(given - fills) > 1.0:
+            yield (
+                f"the camera sees {given:g} degrees but the screen fills {fills:.1f} for the viewer, so the "
+                "perspective is not true; leave field_of_view out to make it so."
+            )
 
 
 def _small_pages(study: Study) -> Iterator[str]:

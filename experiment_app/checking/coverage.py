@@ -6,33 +6,21 @@ value of the making without which the walk could be made.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from collections.abc import Iterator
+from dataclasses import fields, replace
 
 from experiment_app.staging import OWN_WAY, making_of
 from protocols.mistakes.mistake import Mistake, Place
-from protocols.orders.assignment import groups
-from protocols.orders.design import conditions
-from protocols.parts import Level
-from protocols.setting import FACTOR, TABLE, kind_of
+from protocols.mistakes.shown import Shown, shown_trials, value_place
 from protocols.stimulus import MakingPart, Walk
 from protocols.study import Study
-
-
-@dataclass(frozen=True)
-class _Shown:
-    """The levels of a condition or a training trial; place: of a factor's level in it."""
-
-    levels: Mapping[str, Level]
-    place: Callable[[str], Place]
 
 
 def coverage_mistakes(study: Study) -> Iterator[Mistake]:
     """Every place of the study that makes a walk impossible, once, with why."""
     known: dict[Walk, str] = {}
     found: set[Place] = set()
-    for shown in _shown(study):
+    for shown in shown_trials(study):
         for walk in study.task.extremes(study.stimulus, shown.levels):
             if walk.crowd is not None:
                 continue
@@ -47,7 +35,7 @@ def coverage_mistakes(study: Study) -> Iterator[Mistake]:
 def walks_of(study: Study) -> Iterator[Walk]:
     """Every walk at the ends of what a trial can show, once; crowds left out."""
     known: set[Walk] = set()
-    for shown in _shown(study):
+    for shown in shown_trials(study):
         for walk in study.task.extremes(study.stimulus, shown.levels):
             if walk.crowd is None and walk not in known:
                 known.add(walk)
@@ -80,27 +68,14 @@ def _has_imported(walk: Walk) -> bool:
     return walk.actor in actor_library.imported_names() or walk.body in imported_bodies.imported_names()
 
 
-def _shown(study: Study) -> Iterator[_Shown]:
-    """The levels of every condition and training trial, with their places."""
-
-    def in_factors(levels: Mapping[str, Level]) -> Callable[[str], Place]:
-        return lambda factor: ("factors", factor, study.factors[factor].index(levels[factor]))
-
-    for group in groups(study):
-        for levels in conditions(study):
-            yield _Shown({**group, **levels}, in_factors(levels))
-        for i, trial in enumerate(study.practice):
-            yield _Shown({**group, **trial.levels}, lambda factor, i=i: ("practice", i, factor))  # type: ignore[misc]
-
-
-def _cause(study: Study, shown: _Shown, walk: Walk) -> Place:
+def _cause(study: Study, shown: Shown, walk: Walk) -> Place:
     """Where the value stands that makes a walk impossible."""
     of = _alternative(study, shown, walk)
     own = getattr(study.task, "alternatives", {}).get(of)
     if walk.making == OWN_WAY or _why_not(replace(walk, making=OWN_WAY)):
         if own is not None and own.speed is not None:
-            return _value_place(study, shown, own.speed, ("task", "alternatives", of, "speed"))
-        return _value_place(study, shown, study.stimulus.speed, ("stimulus", "speed"))
+            return value_place(study, shown, own.speed, ("task", "alternatives", of, "speed"))
+        return value_place(study, shown, study.stimulus.speed, ("stimulus", "speed"))
     makings: list[tuple[MakingPart | None, Place]] = [
         (own.making if own is not None else None, ("task", "alternatives", of, "making")),
         (study.stimulus.making, ("stimulus", "making")),
@@ -110,7 +85,7 @@ def _cause(study: Study, shown: _Shown, walk: Walk) -> Place:
         for name in _in_doubt(making):
             mended = replace(walk, making=replace(walk.making, **{name: getattr(OWN_WAY, name)}))
             if not _why_not(mended):
-                return _value_place(study, shown, getattr(making, name), (*place, name))
+                return value_place(study, shown, getattr(making, name), (*place, name))
     return given[0][1]
 
 
@@ -120,21 +95,7 @@ def _in_doubt(given: MakingPart) -> list[str]:
     return sorted(names, key=lambda name: name == "method")
 
 
-def _alternative(study: Study, shown: _Shown, walk: Walk) -> str:
+def _alternative(study: Study, shown: Shown, walk: Walk) -> str:
     """The name of the alternative that a walk is of; "" where there is one walk only."""
     walks = study.task.walks(study.stimulus, shown.levels)
     return next((name for name, one in walks.items() if one == walk), "")
-
-
-def _value_place(study: Study, shown: _Shown, setting: object, place: Place) -> Place:
-    """Where the value that a setting has in a trial stands: itself, in a table, or as a factor's level."""
-    kind = kind_of(setting)
-    if kind == FACTOR:
-        factor = str(setting)[1:]
-        return shown.place(factor) if factor in study.factors else place
-    if kind == TABLE:
-        assert isinstance(setting, Mapping)
-        ((factor, values),) = setting.items()
-        level: Any = shown.levels[factor[1:]]
-        return _value_place(study, shown, values[level], (*place, factor, level))
-    return place

@@ -72,7 +72,7 @@ def walking(study: Study, trial: Trial, seconds: float, lod: int | None = None) 
     """The scene of a condition so many seconds after its onset, nothing pressed; alternatives as in the file."""
     order = tuple(study.task.walks(study.stimulus, trial.values))
     begun = Plan(study, (), study.task.keys_for(1), 1).begin(TrialStep(trial, order))
-    scene = view_scene(study, begun.handle(Shown(0.0)).advance(seconds).view)
+    scene = view_scene(study, begun.handle(Shown(0.0)).advance(seconds).view, trial.values)
     return scene if lod is None else replace(scene, lod=lod)
 
 

@@ -144,6 +144,10 @@ class DesktopWindow:
             "clock_resolution_ns": round(1e9 * time.get_clock_info("perf_counter").resolution, 3),
         }
 
+    def prepare(self, scenes: Sequence[Scene]) -> None:
+        """Draws scenes unseen, so that what they need is on the GPU before it is their turn."""
+        self._drawing.prepare([Order(scene, self._pixels, self._pixel_ratio()) for scene in scenes])
+
     def request_end(self, reason: str) -> None:
         """Asks the session to end, as a signal handler does; safe to call at any time."""
         self._requested = reason

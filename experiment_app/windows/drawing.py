@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from queue import SimpleQueue
 from typing import Any
@@ -13,6 +13,7 @@ from typing import Any
 import glfw
 import moderngl
 
+from experiment_app.render.drawn import Drawn as Posed
 from experiment_app.render.part_map import PartMap
 from experiment_app.render.renderer import Renderer
 from experiment_app.scene import Scene
@@ -101,6 +102,16 @@ class Drawing:
         self._call(swap)
         return times
 
+    def prepare(self, orders: Sequence[Order]) -> None:
+        """Draws frames that nobody sees."""
+
+        def draw() -> None:
+            for order in orders:
+                self._paint(order)
+            self._finish()
+
+        self._call(draw)
+
     def close(self) -> None:
         """Frees the GPU's memory and ends the thread."""
         self._call(self._stop)
@@ -142,14 +153,19 @@ class Drawing:
         self.renderer.release()
         glfw.make_context_current(None)  # type: ignore[arg-type]
 
-    def _draw(self, order: Order) -> Drawn:
-        begun, cpu = time.perf_counter(), time.thread_time()
+    def _paint(self, order: Order) -> tuple[Posed, ...]:
+        """Draws a frame into the back buffer; returns its walkers."""
         walkers = drawn_walkers(order.scene)
         if min(order.size) > 0:
             self.renderer.resize(order.size, order.pixel_ratio)
             self.renderer.draw(order.scene, walkers, self.context.screen)
             if order.patch is not None:
                 order.patch.draw(self.context.screen, order.size, order.scene)
+        return walkers
+
+    def _draw(self, order: Order) -> Drawn:
+        begun, cpu = time.perf_counter(), time.thread_time()
+        walkers = self._paint(order)
         cpu_ms = 1e3 * (time.thread_time() - cpu)
         if order.swap_at is not None:
             self._finish()

@@ -14,13 +14,13 @@ from protocols.mistakes.mistake import Mistake, Place, no_such
 from protocols.mistakes.order_mistakes import order_mistakes
 from protocols.mistakes.planned_analysis import analysis_mistakes
 from protocols.mistakes.table_columns import taken_columns
+from protocols.mistakes.views import view_mistakes
 from protocols.orders.assignment import groups
 from protocols.orders.design import conditions
 from protocols.parts import Level
 from protocols.setting import Given, lacking, references, setting_mistakes, unfit
 from protocols.stimulus import Walk
 from protocols.study import ChoiceQuestion, Study
-from protocols.viewing import PLACED, viewing_mistakes
 
 OR_ASSIGNED = "; or name it in participants.assigned, and the program assigns it"
 
@@ -41,7 +41,7 @@ def inconsistencies(study: Study) -> list[Mistake]:
         *order_mistakes(study),
         *analysis_mistakes(study),
         *_questions(study),
-        *(Mistake(place, message) for place, message in viewing_mistakes(study.stimulus, study.display)),
+        *view_mistakes(study),
     ]
 
 
@@ -88,11 +88,6 @@ def _stimulus(study: Study) -> Iterator[Mistake]:
             yield Mistake(("stimulus", key), "a crowd has its own people and speeds; remove this, or the crowd")
     if study.task.kind == "adjustment":
         yield Mistake(("task", "kind"), "a crowd has no step frequency to adjust; choose choice or rating")
-    if look.camera.view not in PLACED:
-        message = f"{look.camera.view} follows one walker; a crowd is seen by {' or '.join(PLACED)}"
-        yield Mistake(("stimulus", "camera"), message)
-    if look.ground == "treadmill":
-        yield Mistake(("stimulus", "ground"), "a crowd needs a ground that is walked along; choose street")
 
 
 def _levels(study: Study) -> Iterator[Mistake]:

@@ -171,7 +171,7 @@ def test_the_question_is_drawn_in_the_participants_words():
 def test_an_adjustment_has_neither_question_nor_strip():
     from protocols.tasks.task import View
 
-    scene = view_scene(edited("walk_ratio").study, View())
+    scene = view_scene(edited("walk_ratio").study, View(), {})
     assert (scene.page, scene.strip) == (None, 0.0)
     assert Page().strip == 0.0
 

@@ -70,7 +70,7 @@ def test_a_metre_at_the_viewers_distance_has_a_metres_angle_in_true_perspective(
             ("interval: 0.7", "display: {viewing_distance: 0.6, screen_height: 0.3}\ninterval: 0.7"),
         ),
     ).study
-    scene = staged(study, (WALKER,))
+    scene = staged(study, (WALKER,), {})
     assert scene.screen_angle == pytest.approx(28.07, abs=0.01)
     camera = replace(scene.camera, view="first_person", height=0.0, place=(0.0, 0.0))
     top, bottom = (seen(camera, (0.0, y, -3.5))[1] for y in (0.875, -0.875))

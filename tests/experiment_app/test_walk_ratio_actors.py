@@ -55,7 +55,7 @@ def test_a_participant_sees_128_trials_each_actor_on_both_bodies_from_both_start
 
 
 def test_it_is_shown_on_a_treadmill_from_the_side() -> None:
-    scene = staged(STUDY.study, ())
+    scene = staged(STUDY.study, (), {})
     assert (scene.ground, scene.camera.view) == ("treadmill", "side")
 
 

@@ -107,7 +107,7 @@ def test_a_rating_by_digit_and_enter_and_one_by_pointer_alone(comparing):
     time.sleep(1.5)
     plan = make_plan(file.study, 1, 1)
     trial = plan.begin(next(step for step in plan.steps if isinstance(step, TrialStep)))
-    page = view_scene(file.study, trial.view).page
+    page = view_scene(file.study, trial.view, {}).page
     assert page is not None
     layout = layout_page(page, *SIZE, 1.0)
     point, button = layout.sliders[0].points[1], layout.boxes[0].rectangle

@@ -40,8 +40,9 @@ def place(text: str, sought: str) -> str:
     [
         ("repetitions: 4 ", "repetition: 4 ", "repetition: 4", "unknown key; did you mean repetitions?"),
         ("prompt: How old are you (years)?", "prompt: Age, in years?", "in years", "a comma stands in quotes"),
-        ("view: three_quarter", "view: $speed", "$speed, distance", "it is the same in all trials, no factor's level"),
-        ("{view: three_quarter,", "{$speed: {}, view: side,", "$speed: {}", "the same in all trials, no table by a"),
+        ("ground:", "level_of_detail: $start\n  ground:", "$start\n  g", "the same in all trials, no factor's"),
+        ("ground:", "marks: {$speed: {}}\n  ground:", "$speed: {}", "the same in all trials, no table by a"),
+        ("{view: three_quarter,", "{$speed: {},", "$speed: {}", "a table belongs to a single key, as view: {$speed:"),
         ("order: random", "order: randm", "randm", "did you mean random?"),
         ("rate: 10 ", "rate: brisk ", "brisk", "'brisk' must be a number, as 1.2"),
         ("rate: 10 ", "rate: '10' ", "'10'", "'10' must be a number, as 1.2; take the quotes away"),
