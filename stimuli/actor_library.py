@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import json
 import re
+import tokenize
 import zipfile
+import zlib
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -29,6 +31,12 @@ from stimuli.whole_file import whole_file
 
 VERSION = 2
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
+
+DAMAGE = (
+    *(OSError, ValueError, KeyError, TypeError, IndexError, EOFError, NotImplementedError),
+    *(zipfile.BadZipFile, zlib.error, tokenize.TokenError),
+)
+"""What NumPy and zipfile raise over an npz file, depending on which of its bytes are wrong."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +153,7 @@ def read_stored(name: str, library: Path | None = None) -> StoredActor:
     try:
         with np.load(path, allow_pickle=False) as content:
             return _read(json.loads(str(content["about"])), content["coefficients"].astype(np.float64))
-    except (OSError, ValueError, KeyError, TypeError, IndexError, EOFError, zipfile.BadZipFile) as error:
+    except DAMAGE as error:
         raise ActorError(
             f"{path} is damaged or of another version of gaitlab ({error}); import the actor again"
         ) from None

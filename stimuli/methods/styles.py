@@ -10,7 +10,6 @@ step mirrors the right one, so the drunken style has no two different steps. Cap
 from __future__ import annotations
 
 import csv
-import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
@@ -19,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stimuli.actor_library import NAME, imported_names, library_folder, read_stored, write_whole
+from stimuli.actor_library import DAMAGE, NAME, imported_names, library_folder, read_stored, write_whole
 from stimuli.actors import CYCLE_SPEEDS, METRONOME, Actor, people, walk_coefficients
 from stimuli.blend import CycleTable
 from stimuli.file_names import why_no_file
@@ -106,7 +105,7 @@ def read_style(name: str) -> Style:
                 raise ValueError(f"coefficients of shape {shift.shape}")
             tempo, late = float(content["step_frequency"]), float(content["left_strike"])
             provenance = str(content["provenance"])
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+    except DAMAGE as error:
         raise MethodError(f"{path} is damaged or of another version of gaitlab ({error}); import it again") from None
     return Style(name, np.ones(len(SIGNALS)), shift, tempo, late, provenance)
 

@@ -1,5 +1,7 @@
 """Imported actors on disk: whole or not at all, read back as they were written, damaged files one sentence."""
 
+from random import Random
+
 import numpy as np
 import pytest
 
@@ -67,6 +69,20 @@ def test_a_write_that_fails_leaves_nothing_and_keeps_the_old_actor(tmp_path, mon
         stored(actor(speeds=(1.0, 1.3)), tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["anna.npz"]
     assert (tmp_path / "anna.npz").read_bytes() == before
+
+
+def test_an_actor_of_which_a_few_bytes_have_changed_is_read_or_refused_in_a_sentence(tmp_path):
+    path, rng, refused = stored(actor(), tmp_path), Random(1), 0
+    whole = path.read_bytes()
+    for _ in range(300):
+        spoiled = bytearray(whole)
+        spoiled[rng.randrange(len(whole))] ^= 1 << rng.randrange(8)
+        path.write_bytes(spoiled)
+        try:
+            read_stored("anna", tmp_path)
+        except ActorError:
+            refused += 1
+    assert refused > 200
 
 
 @pytest.mark.parametrize("size", [0, 10, 200, 1000])

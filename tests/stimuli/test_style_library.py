@@ -1,6 +1,7 @@
 """Captured styles: taken from clips, kept in the library, worn by any actor."""
 
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
@@ -63,6 +64,20 @@ def test_a_name_it_cannot_have_is_refused(name, reason):
     with pytest.raises(MethodError, match=reason):
         store_style(style(name))
     assert imported_styles() == ()
+
+
+def test_a_style_of_which_a_few_bytes_have_changed_is_read_or_refused_in_a_sentence():
+    path, rng, refused = store_style(style()), Random(1), 0
+    whole = path.read_bytes()
+    for _ in range(300):
+        spoiled = bytearray(whole)
+        spoiled[rng.randrange(len(whole))] ^= 1 << rng.randrange(8)
+        path.write_bytes(spoiled)
+        try:
+            read_style("lab7_calm")
+        except MethodError:
+            refused += 1
+    assert refused > 200
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04rubbish", b"no archive at all"])
