@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stimuli.clip import Clip, FootEvent, world_pose
-from stimuli.events import GaitError, find_events, foot_paths
+from stimuli.events import GaitError, foot_paths, told_or_found
 from stimuli.gait import Gait
 from stimuli.gait_measures import GaitMeasures, measure_paths
 from stimuli.motion_files.rest_pose import RestPose, rest_pose
@@ -109,7 +109,7 @@ def cycle_and_measures(clip: Clip, phases: int = PHASES, rest: RestPose | None =
     """
     world, positions = world_pose(clip)
     paths = foot_paths(clip, positions)
-    events = clip.events or find_events(paths)
+    events = told_or_found(clip.events, paths)
     measures = measure_paths(paths, events, clip.name)
     first, last, difference = _most_alike(clip, positions, measures)
     rest = rest or rest_pose(clip)

@@ -118,7 +118,23 @@ def find_events(paths: FootPaths) -> tuple[FootEvent, ...]:
 
 def events_of(clip: Clip) -> tuple[FootEvent, ...]:
     """The events a clip's file holds, or else those found in its motion."""
-    return clip.events or find_events(foot_paths(clip))
+    return told_or_found(clip.events, foot_paths(clip))
+
+
+def told_or_found(told: tuple[FootEvent, ...], paths: FootPaths) -> tuple[FootEvent, ...]:
+    """The events a file tells, if they hold a stride and the other foot's step; else those found, if these do.
+
+    Laboratories often mark only what happens on a force plate, or one side only.
+    """
+    if _hold_a_stride(told):
+        return told
+    found = find_events(paths)
+    return found if _hold_a_stride(found) or not told else told
+
+
+def _hold_a_stride(events: tuple[FootEvent, ...]) -> bool:
+    strikes = sorted(sum(e.side == side and e.kind == "strike" for e in events) for side in SIDES)
+    return strikes[0] >= 1 and strikes[1] >= 2
 
 
 def _motion(paths: FootPaths, foot: int) -> FootMotion:

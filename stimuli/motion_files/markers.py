@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stimuli.clip import FootEvent, Source, Subject
-from stimuli.events import SIDES, FootPaths, GaitError, find_events
+from stimuli.events import SIDES, FootPaths, GaitError, told_or_found
 from stimuli.gait_measures import GaitMeasures, measure_paths
 
 Floats = NDArray[np.floating]
@@ -77,7 +77,7 @@ def measure_markers(recording: MarkerRecording) -> GaitMeasures:
     """The gait of a marker recording, from its file's events where it has them. Raises GaitError."""
     recording = seen_part(recording, [p for p in recording.places if p.endswith(("asis", "heel", "_toe"))])
     paths = marker_foot_paths(recording)
-    return measure_paths(paths, recording.events or find_events(paths), recording.name)
+    return measure_paths(paths, told_or_found(recording.events, paths), recording.name)
 
 
 def seen_part(recording: MarkerRecording, places: Sequence[str]) -> MarkerRecording:

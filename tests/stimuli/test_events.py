@@ -177,6 +177,18 @@ def test_a_files_own_events_give_the_manifests_gait(row):
 
 
 @needs_captures
+@pytest.mark.parametrize("row", manifest("c3d/schreiber")[:3], ids=lambda row: Path(row["file"]).stem)
+def test_of_a_file_that_tells_one_plates_or_one_sides_events_all_are_found_in_the_motion(row):
+    """The manifest's speed within 2 %, its step frequency within 4: these walks are of two strides at most."""
+    recording = read_c3d(MOCAP / row["file"])
+    for told in (recording.events[:2], [event for event in recording.events if event.side == "left"]):
+        measures = measure_markers(replace(recording, events=tuple(told)))
+        assert measures.speed == pytest.approx(float(row["speed_m_s"]), rel=0.02)
+        assert measures.gait.step_frequency == pytest.approx(float(row["step_freq_steps_min"]), rel=0.04)
+        assert not np.isnan(measures.stance_share_right)
+
+
+@needs_captures
 @pytest.mark.parametrize("folder", ["bvh/cmu/", "bvh/bandai/", "c3d/schreiber"])
 def test_a_left_and_a_right_step_make_a_stride(folder):
     """A heel that still comes forward at its strike would make steps up to 4 % too short, here and in every file."""
