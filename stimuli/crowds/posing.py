@@ -1,4 +1,4 @@
-"""Which way poses are made on this computer: with numba where the extra `fast` is installed, else with NumPy."""
+"""Which way poses are made on this computer: with numba where the extra `fast` is there and works, else with NumPy."""
 
 from __future__ import annotations
 
@@ -30,9 +30,16 @@ class Poser(Protocol):
         """The transforms of every walker's joints."""
 
 
+@cache
 def accelerated() -> bool:
-    """Whether numba is there."""
-    return find_spec("numba") is not None
+    """Whether numba is there and works: it refuses a NumPy newer than itself, and folders it cannot keep code in."""
+    if find_spec("numba") is None:
+        return False
+    try:
+        import stimuli.crowds.compiled_poses  # noqa: F401
+    except (ImportError, OSError, RuntimeError, SystemError):
+        return False
+    return True
 
 
 @cache

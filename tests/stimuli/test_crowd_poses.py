@@ -1,6 +1,8 @@
 """A crowd is posed as its walkers alone are: the same matrices, whatever the company, with or without numba."""
 
 import importlib.util
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -173,3 +175,15 @@ def test_one_walker_outside_its_tree_is_refused_with_the_value():
     many_weights(captured, {"speed": np.array([0.8, 1.0]), "step_frequency": np.array([90.0, 100.0])})
     with pytest.raises(CoverageError, match=r"step_frequency 97 steps/min was not captured"):
         many_weights(captured, {"speed": np.array([0.8, 1.0]), "step_frequency": np.array([90.0, 97.0])})
+
+
+def test_a_numba_that_refuses_this_numpy_leaves_crowds_to_numpy(tmp_path):
+    (tmp_path / "numba.py").write_text('raise ImportError("Numba needs NumPy 2.3 or less. Got NumPy 2.4.")')
+    asked = f"""if True:
+        import sys
+        sys.path.insert(0, {str(tmp_path)!r})
+        from stimuli.crowds import poses, posing
+        assert posing.poser() is poses.many_transforms
+    """
+    said = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True)
+    assert said.returncode == 0, said.stderr
