@@ -21,7 +21,7 @@ from stimuli.actors import Actor, ActorError, Person, actor_on, people
 from stimuli.blend_tree import Branch, Leaf, Tree
 from stimuli.bodies.body import Body
 from stimuli.bodies.known import load_body
-from stimuli.file_names import why_no_file
+from stimuli.file_names import same_file, why_no_file
 from stimuli.gait import Gait
 from stimuli.gait_model import COEFFICIENTS, SIGNALS, WalkCurves
 from stimuli.retarget import Figure, scaled, walk_cycle
@@ -123,8 +123,8 @@ def check_name(name: str, library: Path | None = None, replace: bool = False) ->
         raise ActorError(why)
     if name in people():
         raise ActorError(f"{name} is a default actor; choose another name")
-    if not replace and name in imported_names(library):
-        raise ActorError(f"there is an actor {name} already; choose another name, or say --replace")
+    if not replace and (taken := same_file(name, imported_names(library))):
+        raise ActorError(f"there is an actor {taken} already; choose another name, or say --replace")
 
 
 def stored(actor: StoredActor, library: Path | None = None) -> Path:

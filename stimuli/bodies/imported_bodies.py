@@ -7,7 +7,7 @@ from pathlib import Path
 
 from stimuli.bodies.point_light import FIGURES
 from stimuli.body_files.errors import BodyError
-from stimuli.file_names import why_no_file
+from stimuli.file_names import same_file, why_no_file
 from stimuli.user_folder import make_user_folder, user_folder
 from stimuli.whole_file import whole_file
 
@@ -48,8 +48,8 @@ def stored(data: bytes, name: str, replace: bool = False) -> Path:
         raise BodyError(why)
     if name in TAKEN:
         raise BodyError(f"{name} comes with gaitlab; choose another name")
-    if not replace and name in imported_names():
-        raise BodyError(f"there is a body {name} already; choose another name, or say --replace")
+    if not replace and (taken := same_file(name, imported_names())):
+        raise BodyError(f"there is a body {taken} already; choose another name, or say --replace")
     path = path_of(name)
     make_user_folder(path.parent, "bodies")
     with whole_file(path) as stream:

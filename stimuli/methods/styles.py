@@ -21,7 +21,7 @@ import numpy as np
 from stimuli.actor_library import DAMAGE, NAME, imported_names, library_folder, read_stored, write_whole
 from stimuli.actors import CYCLE_SPEEDS, METRONOME, Actor, people, walk_coefficients
 from stimuli.blend import CycleTable
-from stimuli.file_names import why_no_file
+from stimuli.file_names import same_file, why_no_file
 from stimuli.gait_model import COEFFICIENTS, SIGNALS, WalkCurves, load_gait_model
 from stimuli.methods.errors import MethodError
 from stimuli.retarget import walk_cycle
@@ -118,8 +118,8 @@ def store_style(style: Style, replace_old: bool = False) -> Path:
         raise MethodError(f"{style.name!r} is no name for a new style; use letters, digits, - and _, as lab7_sad")
     if why := why_no_file(style.name):
         raise MethodError(why)
-    if style.name in imported_styles() and not replace_old:
-        raise MethodError(f"there is a style {style.name} already; choose another name, or say --replace")
+    if not replace_old and (taken := same_file(style.name, imported_styles())):
+        raise MethodError(f"there is a style {taken} already; choose another name, or say --replace")
     path = path_of(style.name)
     write_whole(
         path,

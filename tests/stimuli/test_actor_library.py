@@ -9,6 +9,7 @@ from stimuli.actor_library import (
     StoredActor,
     StoredCycle,
     actor_of,
+    check_name,
     imported_names,
     library_folder,
     read_stored,
@@ -92,6 +93,13 @@ def test_a_damaged_file_is_one_sentence(tmp_path, size):
     with pytest.raises(ActorError, match="import the actor again") as error:
         read_stored("anna", tmp_path)
     assert "\n" not in str(error.value)
+
+
+def test_a_name_that_differs_in_case_only_is_taken_because_it_is_the_same_file_on_windows_and_macos(tmp_path):
+    stored(actor(), tmp_path)
+    with pytest.raises(ActorError, match="there is an actor anna already; choose another name, or say --replace"):
+        check_name("Anna", tmp_path)
+    check_name("Anna", tmp_path, replace=True)
 
 
 def test_an_actor_that_is_not_there_is_named(tmp_path):

@@ -108,6 +108,12 @@ def test_an_imported_body_is_known_by_its_name(library):
     stored(MAN, "lab7_anna", replace=True)
 
 
+def test_a_name_that_differs_in_case_only_is_taken_because_it_is_the_same_file_on_windows_and_macos(library):
+    stored(MAN, "lab7_anna")
+    with pytest.raises(BodyError, match="there is a body lab7_anna already"):
+        stored(MAN, "LAB7_Anna")
+
+
 @pytest.mark.parametrize("name", ["woman", "point_light", "../x", "", "1a", "a b"])
 def test_names_that_a_body_cannot_have(library, name):
     with pytest.raises(BodyError):

@@ -1,5 +1,6 @@
 """Captured styles: taken from clips, kept in the library, worn by any actor."""
 
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 
@@ -48,6 +49,12 @@ def test_a_style_is_replaced_only_when_asked():
     with pytest.raises(MethodError, match="there is a style lab7_calm already; choose another name, or say --replace"):
         store_style(style())
     store_style(style(), replace_old=True)
+
+
+def test_a_name_that_differs_in_case_only_is_taken_because_it_is_the_same_file_on_windows_and_macos():
+    store_style(style())
+    with pytest.raises(MethodError, match="there is a style lab7_calm already; choose another name, or say --replace"):
+        store_style(replace(style(), name="Lab7_Calm"))
 
 
 @pytest.mark.parametrize(
