@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -126,6 +127,10 @@ def _video(frames: Iterator[Pixels], rate: Fraction, path: Path) -> str:
         raise UsageError(
             f"--out {path}: this needs PyAV (pip install 'gaitlab[video]'); without it write .webp or a folder of PNGs."
         ) from None
+    first = next(frames)
+    height, width = first.shape[:2]
+    if width % 2 or height % 2:
+        raise UsageError(f"{path}: pictures of {width}x{height} pixels are no video, which needs even numbers.")
     count = 0
     with av.open(str(path), "w") as file:
         stream = file.add_stream("libvpx-vp9" if path.suffix.lower() == ".webm" else "libx264", rate=rate)
@@ -135,9 +140,8 @@ def _video(frames: Iterator[Pixels], rate: Fraction, path: Path) -> str:
         # said in the file, because players otherwise guess the matrix from the picture's size, and colours shift
         stream.codec_context.colorspace = stream.codec_context.color_primaries = stream.codec_context.color_trc = BT709
         stream.codec_context.color_range = LIMITED
-        for pixels in frames:
-            if count == 0:
-                stream.height, stream.width = pixels.shape[:2]
+        stream.height, stream.width = height, width
+        for pixels in chain([first], frames):
             coloured = av.VideoFrame.from_ndarray(pixels, format="rgb24")
             frame = coloured.reformat(format="yuv420p", dst_colorspace=BT709, dst_color_range=LIMITED)
             frame.pts, frame.time_base = count, 1 / rate

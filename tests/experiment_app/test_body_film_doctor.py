@@ -158,6 +158,20 @@ def test_a_video_keeps_colours_and_says_how_they_are_coded(tmp_path, ending):
         assert np.abs(read[32:96, 64 * i + 16 : 64 * i + 48].astype(int) - colour).max() <= 4
 
 
+def test_pictures_of_an_odd_size_are_no_video_and_leave_no_file(tmp_path):
+    from fractions import Fraction
+
+    import numpy as np
+
+    from experiment_app.errors import UsageError
+    from experiment_app.pictures.film import write_film
+
+    pytest.importorskip("av")
+    with pytest.raises(UsageError, match="pictures of 63x48 pixels are no video, which needs even numbers"):
+        write_film(iter([np.zeros((48, 63, 3), np.uint8)] * 3), Fraction(30), tmp_path / "clip.mp4")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_an_animated_picture_has_the_length_asked_for(tmp_path):
     from fractions import Fraction
 
