@@ -51,7 +51,7 @@ class CrowdPass:
     def place(self, crowd: DrawnCrowd, viewpoint: Viewpoint, picture_height: int, forced: int | None = None) -> None:
         """Uploads this frame's transforms and decides the levels of detail, unless one is forced."""
         cast = crowd.cast
-        if self._meshes is None or self._meshes.cast is not cast:
+        if self._meshes is None or not self._meshes.wear(cast):
             if self._meshes is not None:
                 self._meshes.release()
             self._meshes = CrowdMeshes(self._context, cast)
@@ -145,7 +145,7 @@ class CrowdMeshes:
 
     def __init__(self, context: moderngl.Context, cast: CrowdLook) -> None:
         self._context = context
-        self.cast = cast
+        self._cast = cast
         numbers = {name: number for number, name in enumerate(cast.materials)}
         self.parts: list[list[tuple[int, int]]] = []
         self.carriers: list[list[int]] = []
@@ -170,6 +170,17 @@ class CrowdMeshes:
         self.palette = _table(context, *cast.colours.shape[1::-1])
         self.palette.write(np.ascontiguousarray(cast.colours, np.float32))
         self.finishes = finishes_of(cast.materials)
+
+    def wear(self, cast: CrowdLook) -> bool:
+        """Puts on the looks of a crowd, and says whether it has these bodies; two beside each other take turns."""
+        if cast is self._cast:
+            return True
+        same = cast.bodies == self._cast.bodies and cast.materials == self._cast.materials
+        if not same or cast.colours.shape != self._cast.colours.shape:
+            return False
+        self.palette.write(np.ascontiguousarray(cast.colours, np.float32))
+        self._cast = cast
+        return True
 
     def array(self, program: moderngl.Program, bare: bool) -> moderngl.VertexArray:
         """The meshes as a program takes them; bare: it needs places only."""

@@ -8,6 +8,7 @@ import pytest
 
 from experiment_app.crowds import END, crowd_cast, drawn_crowd
 from experiment_app.pictures.film import condition_of, walking
+from experiment_app.render import crowd_pass
 from experiment_app.render.cameras import place_camera
 from experiment_app.render.contact import BALLS, CROWD_HALF_SIZE, crowd_occluders
 from experiment_app.render.crowd_levels import BAND, HEIGHTS, levels_of, seen_instances, shadow_instances
@@ -101,6 +102,26 @@ def test_two_crowds_stand_side_by_side():
     left, right = together[:, :319], together[:, -319:]
     np.testing.assert_array_equal(left, right)
     assert np.abs(left - alone[:, :319]).max() > 0
+
+
+def test_two_unlike_crowds_side_by_side_are_drawn_each_in_its_looks_with_bodies_uploaded_once(monkeypatch):
+    uploaded = []
+
+    class Counted(crowd_pass.CrowdMeshes):
+        def __init__(self, context, cast):
+            uploaded.append(cast)
+            super().__init__(context, cast)
+
+    monkeypatch.setattr(crowd_pass, "CrowdMeshes", Counted)
+    varied = street()
+    alike = replace(varied, crowd=replace(varied.crowd, variation="1:5", palette="equal_luminance"))
+    scenes = (replace(varied, beside=alike), replace(varied, beside=alike), replace(alike, beside=varied))
+    first, again, swapped = pixels(*scenes, size=(640, 180))
+    assert len(uploaded) == 1
+    np.testing.assert_array_equal(first, again)
+    np.testing.assert_array_equal(first[:, :319], swapped[:, -319:])
+    np.testing.assert_array_equal(first[:, -319:], swapped[:, :319])
+    assert np.abs(first[:, :319] - first[:, -319:]).max() > 0
 
 
 def test_the_part_map_knows_the_walkers_of_a_crowd():
