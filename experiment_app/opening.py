@@ -6,6 +6,7 @@ import platform
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -151,9 +152,13 @@ def _utc_now() -> str:
 def recorded_versions() -> dict[str, str]:
     """Program to version, here and now, as a journal's header holds them."""
     versions = {"python": platform.python_version(), "system": platform.platform()}
-    for name in RECORDED_VERSIONS:
-        try:
-            versions[name] = version(name)
-        except PackageNotFoundError:
-            versions[name] = "unknown"
-    return versions
+    return versions | {name: _installed(name) for name in RECORDED_VERSIONS}
+
+
+@cache
+def _installed(name: str) -> str:
+    """The version of a package, looked up once: simulated participants open many runs in one program."""
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "unknown"

@@ -79,7 +79,7 @@ def why_over(journal: Path) -> str:
         file.seek(max(file.seek(0, os.SEEK_END) - END_BYTES, 0))
         tail = file.read().split(b"\n")
     reasons = []
-    for part in tail:
+    for part in (part for part in tail if b'"end"' in part):  # all are looked at for every participant who arrives
         with suppress(DamagedLineError, UnicodeDecodeError):  # cut off by this reader, or by a kill
             line = decode_line(part.decode("utf-8"))
             reasons += [str(line["reason"])] if line["kind"] == "end" else []
