@@ -292,7 +292,9 @@ def test_data_beside_the_study_file_are_not_split_by_a_run_from_another_working_
     monkeypatch.chdir(here)
     assert default_data("walk_ratio", "walk_ratio", False) == Path("data")
     assert default_data("../my lab/s.yaml", "walk_ratio", True) == Path("pilot")
-    with pytest.raises(UsageError, match=r'Say --data "../my lab/data" to go on there, or --data data to begin'):
+    with pytest.raises(
+        UsageError, match=r"Say --data ['\"]../my lab/data['\"] to go on there, or --data data to begin"
+    ):
         default_data("../my lab/s.yaml", "walk_ratio", False)
     assert run_command(["run", "../my lab/s.yaml", "--participant", "P01"]) == 2
     assert "no data of walk_ratio in this working folder" in " ".join(capfd.readouterr().err.split())

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stimuli.actor_library import actor_of, imported_names
+from stimuli.events import events_of
 from stimuli.importing.clip_report import clip_lines, clip_report
 from stimuli.importing.description import read_description
 from stimuli.importing.errors import ImportingError
@@ -20,6 +21,7 @@ from stimuli.importing.folder import import_folder
 from stimuli.importing.walks import read_walk, read_walks
 from stimuli.measure import delivered_gait
 from stimuli.motion_files.errors import MotionFileError
+from stimuli.motion_files.reading import read_clip
 
 MOCAP = Path(__file__).parents[2].parent / "shared" / "mocap"
 CMU = MOCAP / "bvh" / "cmu"
@@ -92,6 +94,17 @@ def test_a_standing_trial_is_described_and_has_no_gait():
     assert report["steps_used"] == 0
     assert any("whole stride" in warning for warning in report["warnings"])
     assert any("Note" in line for line in clip_lines(report))
+
+
+@needs_captures
+@pytest.mark.parametrize(("told", "noted"), [("left", True), ("", False), ("left right", False)])
+def test_a_clip_whose_file_marks_one_foot_only_is_noted_as_found_in_the_motion(monkeypatch, told, noted):
+    clip = read_clip(MOCAP / next(row["file"] for row in manifest() if int(row["n_steps_used"]) > 2))
+    events = tuple(event for event in events_of(clip) if event.side in told.split())
+    monkeypatch.setattr("stimuli.importing.clip_report.read_clip", lambda _: replace(clip, events=events))
+    report = clip_report(Path("walk.c3d"))
+    assert any("found in the motion" in warning for warning in report["warnings"]) == noted
+    assert report["steps_used"] > 2
 
 
 @needs_captures
