@@ -5,15 +5,22 @@ A walker is posed anew every frame; on so few numbers a call to NumPy costs more
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import cos, sin, sqrt
+from typing import Any, TypeVar
 
 Vector = tuple[float, float, float]
 Turn = tuple[float, float, float, float]
 """x y z w, unit length."""
 
+Number = TypeVar("Number", float, Any)
 
-def multiply(first: Turn, second: Turn) -> Turn:
-    """The rotation that turns by `second` and then by `first` (Hamilton's product)."""
+
+def multiply(first: Iterable[Number], second: Iterable[Number]) -> tuple[Number, Number, Number, Number]:
+    """The rotation that turns by `second` and then by `first` (Hamilton's product), x y z w.
+
+    Also of planes: arrays (4, ...) of many rotations.
+    """
     ax, ay, az, aw = first
     bx, by, bz, bw = second
     return (

@@ -59,7 +59,7 @@ def _write_matrix(rotation: Any, turn: Any) -> None:
 
 @njit(cache=True, error_model="numpy")
 def matrices_of_one(transforms: Any) -> Any:
-    """(21, 3, 4): poses.as_matrices of the transforms (21, 2, 4) of one walker, whose quaternions have length 1."""
+    """(21, 3, 4): bind-pose vertices -> the walker's frame, of transforms (21, 2, 4) with unit quaternions."""
     matrices = np.empty((transforms.shape[0], 3, 4), np.float32)
     for joint in range(transforms.shape[0]):
         _write_matrix(transforms[joint, 0], matrices[joint])

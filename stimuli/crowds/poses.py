@@ -13,6 +13,7 @@ import numpy as np
 from stimuli.crowds.table import PLANES, UPPER_COUNT, Constants, Mix, Singles
 from stimuli.legs import contact
 from stimuli.legs.two_bone import FURTHEST, STRAIGHTEST
+from stimuli.one_rotation import multiply
 from stimuli.skeleton import JOINTS, Floats
 from stimuli.walker import LOWERING_SOFTNESS
 
@@ -70,20 +71,6 @@ def many_transforms(
     return out
 
 
-def as_matrices(transforms: Singles) -> Singles:
-    """(..., 3, 4): the matrices of transforms (..., 2, 4), which a vertex (x, y, z, 1) is multiplied by.
-
-    A quaternion of length sqrt(s) turns and makes s times as large, as every element of the matrix is a sum of
-    products of two of its numbers.
-    """
-    turn = transforms[..., 0, :]
-    products = (turn[..., :, None] * turn[..., None, :]).reshape(*turn.shape[:-1], 16)
-    matrices = np.empty((*turn.shape[:-1], 3, 4), np.float32)
-    matrices[..., :3] = (products @ _OF_PRODUCTS).reshape(*turn.shape[:-1], 3, 3)
-    matrices[..., 3] = transforms[..., 1, :3]
-    return matrices
-
-
 def _blended(tables: Singles, mix: Mix, place: Floats) -> Singles:
     """(columns, T, N): weighted mean over each walker's cycles at places (T, N) in the cycle, linear between samples.
 
@@ -107,19 +94,7 @@ def _turn_upper_body(local: Singles, rotations: Singles) -> None:
     turned = rotations[:, :UPPER_COUNT]
     np.divide(local, np.sqrt(np.einsum("kjn,kjn->jn", local, local)), out=turned)
     for joints, parents in UPPER_LEVELS:
-        turned[:, joints] = _product(turned[:, parents], turned[:, joints])
-
-
-def _product(first: Singles, second: Singles) -> tuple[Singles, Singles, Singles, Singles]:
-    """x y z w of the rotation that turns by the second quaternions (4, ..., N), then by the first."""
-    ax, ay, az, aw = first
-    bx, by, bz, bw = second
-    return (
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-        aw * bw - ax * bx - ay * by - az * bz,
-    )
+        turned[:, joints] = multiply(turned[:, parents], turned[:, joints])
 
 
 def _matrices(rotations: Singles) -> Singles:
@@ -133,20 +108,6 @@ def _matrices(rotations: Singles) -> Singles:
     turn[1, 0], turn[1, 1], turn[1, 2] = xy + wz, 1.0 - xx - zz, yz - wx
     turn[2, 0], turn[2, 1], turn[2, 2] = xz - wy, yz + wx, 1.0 - xx - yy
     return turn
-
-
-def _of_products() -> Singles:
-    """(16, 9): how often each product of two of a quaternion's x y z w is in each element of its matrix."""
-    counts = np.zeros((4, 4, 3, 3), np.float32)
-    for row in range(3):
-        following, last = (row + 1) % 3, (row + 2) % 3
-        counts[range(4), range(4), row, row] = [1.0 if number in (row, 3) else -1.0 for number in range(4)]
-        counts[row, following, [row, following], [following, row]] = 2.0
-        counts[last, 3, [row, following], [following, row]] = -2.0, 2.0
-    return counts.reshape(16, 9)
-
-
-_OF_PRODUCTS = _of_products()
 
 
 def _turned(turn: Singles, vector: Singles) -> Singles:
@@ -228,7 +189,7 @@ def _solved(legs: Constants, way: Floats, reach: Floats, knee_yaw: Singles) -> t
         z * half_cosine - y * half_sine,
         w * half_cosine - x * half_sine,
     )
-    return _product(np.array(in_plane), legs.bones_from_rest)
+    return multiply(in_plane, legs.bones_from_rest)
 
 
 def _cross(first: Singles, second: Singles) -> Singles:

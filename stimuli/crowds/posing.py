@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from importlib.util import find_spec
-from typing import Protocol
 
 import numpy as np
 
@@ -15,19 +15,8 @@ from stimuli.crowds.table import Mix, Singles, WalkTable
 from stimuli.skeleton import Floats
 from stimuli.walker import drawn_pose, skin_matrices
 
-
-class Poser(Protocol):
-    """`poses.many_transforms`, in whichever way."""
-
-    def __call__(
-        self,
-        mix: Mix,
-        phases: Floats,
-        out: Singles | None = None,
-        sizes: Floats | None = None,
-        places: Floats | None = None,
-    ) -> Singles:
-        """The transforms of every walker's joints."""
+Poser = Callable[[Mix, Floats, Singles | None, Floats | None, Floats | None], Singles]
+"""`poses.many_transforms`, in whichever way."""
 
 
 @cache

@@ -35,8 +35,10 @@ DEPTH_ORDER: tuple[str, ...] = (
 
 UPPER_COUNT = len(UPPER)
 COLUMNS = 4 * UPPER_COUNT + 3
-_X_TO_DOWN: Turn = (0.0, 0.0, -math.sqrt(0.5), math.sqrt(0.5))
 PLANES = np.array([JOINTS.index(name) for name in DEPTH_ORDER])
+
+_X_TO_DOWN: Turn = (0.0, 0.0, -math.sqrt(0.5), math.sqrt(0.5))
+"""Turns a bone along +X (two_bone.Leg.thigh_to_axes) straight down, and its hinge from +Y to +X."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,9 +21,9 @@ from protocols.study_file import read_study
 from stimuli.actors import load_actor
 from stimuli.blend_tree import Leaf
 from stimuli.crowds.motions import figure_of, motion_of
-from stimuli.crowds.poses import as_matrices
 from stimuli.skeleton import JOINTS
 from stimuli.walker import drawn_pose, skin_matrices
+from tests.stimuli.transforms import as_matrices
 
 SIZE = (320, 180)
 CAMERA = Camera("elevated", 30.0, 9.0, 40.0, 180.0)

@@ -8,7 +8,6 @@ from dataclasses import replace
 import moderngl
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from experiment_app.crowds import drawn_crowd
 from experiment_app.render.body_buffers import LIT_FORMAT, LIT_NAMES, packed
@@ -21,6 +20,7 @@ from experiment_app.scene import Crowd, Scene, Walker
 from experiment_app.walkers import drawn_walkers
 from stimuli.bodies.body import Surface
 from stimuli.bodies.skinning import skin
+from tests.stimuli.transforms import as_matrices
 
 CAPTURE = """
 in vec4 normal_sky;
@@ -75,8 +75,7 @@ def test_skinning_a_crowd_on_the_gpu_is_skinning_in_numpy(context: moderngl.Cont
     vertices, _ = packed(surfaces)
     got = _skinned(context, vertices, crowd.rows[own], crowd=True)
     for one, row in zip(got, crowd.rows[own], strict=True):
-        turn = Rotation.from_quat(row[:PLACE:2]).as_matrix() * np.sum(row[:PLACE:2] ** 2, axis=1)[:, None, None]
-        _assert_skinned(one, surfaces, np.dstack([turn, row[1:PLACE:2, :3]]), np.zeros(3), within=2e-5)
+        _assert_skinned(one, surfaces, as_matrices(row[:PLACE].reshape(-1, 2, 4)), np.zeros(3), within=2e-5)
 
 
 def test_what_faces_the_eye_and_the_sun_squarely_shines_with_a_number(context: moderngl.Context) -> None:

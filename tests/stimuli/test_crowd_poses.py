@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
 
 from stimuli.actors import load_actor
 from stimuli.blend_tree import Branch, CoverageError, Leaf, blend_weights, many_weights
@@ -22,6 +21,7 @@ from stimuli.legs.contact import Sole
 from stimuli.retarget import Figure
 from stimuli.walker import drawn_pose, skin_matrices
 from tests.stimuli.short_legs import short_legged
+from tests.stimuli.transforms import as_matrices
 
 SAME = 1e-4
 """Of each element of a matrix; the turns have no unit, the places are in metres."""
@@ -86,7 +86,7 @@ walks = st.lists(
 def test_a_crowd_is_posed_as_each_of_its_walkers_alone(people, way, walks):
     actors, table = people
     who, speed, frequency, phase = (np.array(column) for column in zip(*walks, strict=True))
-    together = crowd_poses.as_matrices(many_transforms(way)(mixed(table, who, speed, frequency), phase))
+    together = as_matrices(many_transforms(way)(mixed(table, who, speed, frequency), phase))
     for matrices, walk in zip(together, walks, strict=True):
         actor = actors[walk[0]]
         alone = skin_matrices(actor, drawn_pose(actor, *walk[1:]))
@@ -120,20 +120,11 @@ def test_walkers_are_made_larger_and_put_on_their_places(people, way):
     _, table = people
     mix = mixed(table, np.array([1, 4]), np.array([1.0, 1.1]), np.array([90.0, 101.0]))
     phase, sizes, places = np.array([0.1, 0.6]), np.array([0.9, 1.1]), np.array([[3.0, -7.0], [0.5, 20.0]])
-    expected = sizes[:, None, None, None] * crowd_poses.as_matrices(many_transforms(way)(mix, phase))
+    expected = sizes[:, None, None, None] * as_matrices(many_transforms(way)(mix, phase))
     expected[:, :, 0, 3] += places[:, :1]
     expected[:, :, 2, 3] += places[:, 1:]
-    got = crowd_poses.as_matrices(many_transforms(way)(mix, phase, None, sizes, places))
+    got = as_matrices(many_transforms(way)(mix, phase, None, sizes, places))
     np.testing.assert_allclose(got, expected, atol=5e-6)
-
-
-@given(st.lists(st.floats(-2.0, 2.0), min_size=4, max_size=4).filter(lambda q: np.linalg.norm(q) > 0.1))
-def test_a_quaternion_s_matrix_turns_and_makes_larger_by_its_squared_length(rotation):
-    transforms = np.array([rotation, [1.0, 2.0, 3.0, 0.0]], np.float32)
-    expected = Rotation.from_quat(rotation).as_matrix() * np.dot(rotation, rotation)
-    matrices = crowd_poses.as_matrices(transforms)
-    np.testing.assert_allclose(matrices[:, :3], expected, atol=2e-5)
-    np.testing.assert_array_equal(matrices[:, 3], [1.0, 2.0, 3.0])
 
 
 def test_one_walker_is_the_same_by_the_short_way():
