@@ -101,9 +101,7 @@ def _measured(clip: Clip) -> tuple[tuple[FootEvent, ...], GaitMeasures | None, l
         events = events_of(clip)
         measures = measure_paths(paths, events, clip.name)
         if clip.events and events != clip.events:
-            warnings.append(
-                "the file marks no stride of one foot and step of the other; all events are found in the motion"
-            )
+            warnings.append("the events that the file marks hold no whole stride, so all were found in the motion")
     except GaitError as error:
         return events, None, [*warnings, str(error)]
     if not measures.steady and measures.steps_used > 2:
