@@ -8,6 +8,7 @@ from statistics import mean
 import pytest
 
 from experiment_app.errors import UsageError
+from experiment_app.run_folder import journal_lines
 from experiment_app.simulated.observer import draw_observer
 from experiment_app.simulated.simulate import simulate
 from protocols.study_file import parse_study, read_study
@@ -16,8 +17,6 @@ from tests.protocols.studies import changed, shipped_text, short, study
 
 
 def responses(run, **levels):
-    from experiment_app.run_folder import journal_lines
-
     return [
         line["response"]["walk_ratio"]
         for line in journal_lines(run.journal)[0]
@@ -25,12 +24,20 @@ def responses(run, **levels):
     ]
 
 
-def test_the_same_seed_gives_the_same_journal_apart_from_the_start_time(tmp_path):
-    texts = []
-    for folder in ("a", "b"):
+def test_the_same_seed_gives_the_same_journal_apart_from_the_start_time(tmp_path, monkeypatch):
+    """Checksums go on from line to line, so they follow from the start too: at one second every byte is the same."""
+    journals = []
+    for folder, second in (("a", 1), ("b", 1), ("c", 2)):
+        monkeypatch.setattr("experiment_app.opening._utc_now", lambda second=second: f"2026-11-24T12:00:0{second}Z")
         (run,) = simulate(short(), 1, tmp_path / folder, seed=5)
-        texts.append(run.journal.read_text(encoding="utf-8").split("\n")[1:])
-    assert texts[0] == texts[1]
+        journals.append(run.journal)
+    first, again, later = journals
+    assert first.read_bytes() == again.read_bytes()
+    assert first.read_bytes() != later.read_bytes()
+    checks = {"started": None, "after": None, "crc": None}
+    content = [[{**line, **checks} for line in journal_lines(journal)[0]] for journal in (first, later)]
+    assert len(content[0]) > 10
+    assert content[0] == content[1]
 
 
 def test_observers_without_noise_answer_their_own_preference_to_half_a_percent(tmp_path):
@@ -45,8 +52,6 @@ def test_observers_without_noise_answer_their_own_preference_to_half_a_percent(t
 
 
 def test_participants_fill_the_between_factor_in_turn(tmp_path):
-    from experiment_app.run_folder import journal_lines
-
     answers = [
         next(line["value"] for line in journal_lines(run.journal)[0] if line.get("question") == "sex")
         for run in simulate(short(), 4, tmp_path)
